@@ -1,4 +1,4 @@
-/** The one module that fetches: CSRF, the error shape, and words for what went wrong. */
+/** The one module that fetches: CSRF, the shape of errors, and their texts. */
 
 import { COPY_HEADER, copiedAt } from "./offline_copy.js";
 import { t } from "./text.js";
@@ -72,7 +72,7 @@ function cookie(name) {
 }
 
 /**
- * First message in DRF's nested details, with the place where it stands.
+ * First message in DRF's nested details, with the path of its field.
  *
  * @param {unknown} details
  * @param {string} [place]

@@ -97,13 +97,13 @@ export function icon(name, size = "") {
   return svg("svg", { class: `icon ${size}`.trim(), "aria-hidden": "true" }, svg("use", { href: `${SPRITE}#${name}` }));
 }
 
-/** Puts children in the place of those that an element has. @param {Element} element @param {...Child} children */
+/** Replace the children of an element. @param {Element} element @param {...Child} children */
 export function setChildren(element, ...children) {
   element.replaceChildren(...shown(children));
 }
 
 /**
- * Puts children into an element only where they would be others than before: the pointer and the focus stay with the same ones.
+ * Replace the children of an element only if they differ: otherwise pointer and focus stay on the present ones.
  *
  * @param {HTMLElement | SVGElement} element
  * @param {string} key is equal as long as the children are

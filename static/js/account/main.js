@@ -28,7 +28,7 @@ const isOn = (control) => control instanceof HTMLInputElement && control.checked
 /** @param {Control} control */
 const preferenceOf = (control) => (control.type === "checkbox" ? isOn(control) : control.value);
 
-/** Stores the preference that a control stands for. @param {Control} control */
+/** Store the preference of a control. @param {Control} control */
 async function keep(control) {
   const name = control.dataset.keep ?? "";
   const saved = byId("saved");

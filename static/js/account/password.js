@@ -1,4 +1,4 @@
-/** Changing the password: faults stand at the field that they are about. */
+/** Change of the password: faults are shown at their field. */
 
 import { ApiError, post } from "../api.js";
 import { byId, h, icon } from "../dom.js";

@@ -6,7 +6,7 @@ import { open } from "../page/keyboard.js";
 import { t } from "../text.js";
 
 /**
- * Sends, and once more after the password was confirmed if the server asks for that. Null where the user cancels.
+ * Send a request, and repeat it after a password confirmation if the server requires one. Null where the user cancels.
  *
  * @template Result
  * @param {() => Promise<Result>} send

@@ -1,4 +1,4 @@
-/** The log of sign-ins: who, from where, with which browser, and how it went. */
+/** The log of sign-ins: user, address, browser, and outcome. */
 
 import { browserName, OUTCOMES } from "../account/sign_in_row.js";
 import { h, icon } from "../dom.js";

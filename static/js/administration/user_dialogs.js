@@ -1,4 +1,4 @@
-/** Dialogs about one user: name and address, and a question before something is taken from them. */
+/** Dialogs about one user: name and address, and a confirmation before rights are removed. */
 
 import { ApiError } from "../api.js";
 import { h, icon } from "../dom.js";

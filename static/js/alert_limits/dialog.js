@@ -121,7 +121,7 @@ const fieldOf = ({ name, label, unit, factor }, { stated, usual, bounds }) =>
   });
 
 /**
- * Marks the fields of pairs that stand the wrong way round. Returns whether there are any.
+ * Mark the fields of pairs in the wrong order. Returns whether there are any.
  *
  * @param {Map<string, NumberField>} fields
  * @param {Figures} stated

@@ -31,7 +31,7 @@ class DataIssueList {
   #draw;
   /** @type {number | null} */
   #chosenId = null;
-  #chosenIndex = 0; // of the row that is or was chosen: what follows takes its place
+  #chosenIndex = 0; // index of the chosen row, or its former one: the following row moves there
   /** @type {DataIssueFilter} */
   filter = { state: "open", kinds: new Set(), text: "", inView: false };
 
@@ -103,7 +103,7 @@ class DataIssueList {
     rows[Math.max(0, Math.min(rows.length - 1, from + by))]?.focus();
   }
 
-  /** Opens the issue that has taken the place of the chosen one, which is off the list. */
+  /** Open the issue in the former place of the chosen one, which has left the list. */
   openNext() {
     const rows = this.#rows();
     rows[Math.min(this.#chosenIndex, rows.length - 1)]?.click();

@@ -1,4 +1,4 @@
-/** What the kinds of issues are called, and what their figure means. */
+/** Names of the kinds of issues, and the meaning of their figure. */
 
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
@@ -28,7 +28,7 @@ export const STATES = [
 ];
 
 /**
- * "cuts off 34.2 km", or nothing where the issue cuts off nothing.
+ * "cuts off 34.2 km", or "" where the issue cuts off no network.
  *
  * @param {Pick<Properties, "kind" | "cut_off_m">} issue
  */
@@ -71,7 +71,7 @@ export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
   }
 }
 
-/** What Spanwise cannot know, where that matters. @param {Pick<Properties, "kind" | "details">} issue */
+/** A caution on facts that Spanwise cannot know, where they matter. @param {Pick<Properties, "kind" | "details">} issue */
 export function cautionOf({ kind, details }) {
   if (kind === "dead_end") return t("Spanwise keeps no substations: if one stands here, leave the end as it is.");
   if (kind === "missing_support") return t("Vertices inside a substation may hang on its portals.");

@@ -171,7 +171,7 @@ async function choose(id, { stay = false } = {}) {
     layer.showIssue(map.map, data);
     map.ring([]);
     list.mark(id);
-    if (layout.isPhone()) byId("side-scroll").scrollTop = 0; // there the panel stands above the list
+    if (layout.isPhone()) byId("side-scroll").scrollTop = 0; // on small screens the panel is above the list
     remember();
     if (!stay) map.fit(boxOf(data));
     announce(data.properties.sentence);
@@ -249,7 +249,7 @@ async function repair(body) {
 }
 
 /**
- * Takes a decision about the chosen issue; `back(id)` takes it back.
+ * Carry out a decision on the chosen issue; `back(id)` undoes it.
  *
  * @param {(id: number) => Promise<unknown>} change
  * @param {string} words

@@ -5,7 +5,7 @@ import { inAir } from "./in_air.js";
 /** @import { EstimateShape, LiveUav } from "../api_types.d.ts" */
 
 export const FRESH_S = 3; // a newer report is shown as it is: two seconds of delay are normal at one report a second
-const RENEWED_S = 10; // an estimate that is older is of a watch that is gone
+const RENEWED_S = 10; // an older estimate is from an estimator that has stopped
 
 /** @typedef {"measured" | "estimated" | "lost"} Certainty */
 
@@ -66,7 +66,7 @@ export function certaintyOf(uav, now_ms) {
 }
 
 /**
- * Where it is drawn, lon lat, with its heading: { position, heading_deg }; null for a UAV that was never seen.
+ * Its drawn position [lon, lat] with its heading: { position, heading_deg }; null for a UAV that was never seen.
  *
  * @param {Pick<LiveUav, "measured" | "estimated">} uav
  * @param {Certainty | null} certainty

@@ -28,7 +28,7 @@ import {
  * @property {boolean} [isNeeded]
  */
 /**
- * A choice that has to be made, with nothing chosen beforehand.
+ * A required choice without a default.
  *
  * @typedef {object} QuestionChoices
  * @property {string} name
@@ -223,7 +223,7 @@ export const abortQuestion = ({ name, isActive, uavs }) => {
 };
 
 /**
- * What confirmAct asks.
+ * The question for confirmAct.
  *
  * @param {AskedKind} kind
  * @param {AskedOf} flyer

@@ -203,7 +203,7 @@ export function commandWords(command) {
 }
 
 /**
- * Its times, one after the other: "given 14:02:10, sent 14:02:11".
+ * Its times in order: "given 14:02:10, sent 14:02:11".
  *
  * @param {Command} command
  * @param {(iso: string) => string} timeText
@@ -271,7 +271,7 @@ export function whyNoStart(mission, flyer, commands) {
 }
 
 /**
- * What could be sent to a UAV now: the number of a flight, null where nothing is to be sent.
+ * The number of the flight that can be sent to a UAV now; null where none is to be sent.
  *
  * @param {Pick<Flyer, "uav" | "flights" | "flown">} flyer
  * @param {readonly Command[]} commands
@@ -289,7 +289,7 @@ export function flightToSend({ uav, flights, flown }, commands, connection = nul
   return isThere ? null : next;
 }
 
-/** Why the mission can be neither changed nor, perhaps, sent; a sentence. @param {Mission} mission */
+/** Why the mission can be neither changed nor, where it applies, sent; a sentence. @param {Mission} mission */
 export function stageWords(mission) {
   const { approval, state } = mission;
   if (state === "completed") return t("Flown to its end. Save a copy to fly it again.");

@@ -38,7 +38,7 @@ export function towards([longitude, latitude], bearing_deg, far_m) {
 }
 
 /**
- * The longitude as it is named nearest to another one: -179 beside 180 is 181.
+ * The longitude in the turn nearest to another one: -179 beside 180 is 181.
  *
  * @param {number} other
  * @param {number} longitude
@@ -47,7 +47,7 @@ export const beside = (other, longitude) =>
   Math.abs(longitude - other) <= 180 ? longitude : longitude + 360 * Math.round((other - longitude) / 360);
 
 /**
- * A path over the 180th meridian without its jump: longitudes go on beyond ±180. It starts beside `start`.
+ * A path over the 180th meridian without its jump: longitudes continue beyond ±180. It starts near `start`.
  *
  * @param {readonly (readonly number[])[]} path
  * @param {number} [start]
@@ -65,7 +65,7 @@ export function continuous(path, start = path[0]?.[0]) {
 export const pathLength_m = (path) =>
   path.slice(1).reduce((sum, position, index) => sum + distance_m(path[index], position), 0);
 
-/** Of a ring that does not repeat its first position. @param {readonly (readonly number[])[]} ring */
+/** Area of a ring that does not repeat its first position [m²]. @param {readonly (readonly number[])[]} ring */
 export function ringArea_m2(ring) {
   let sum = 0;
   ring.forEach(([longitude, latitude], index) => {

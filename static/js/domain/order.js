@@ -17,7 +17,10 @@ export const isEndedUnseen = (alert) =>
 /** @param {Pick<Alert, "closed_at" | "acknowledged_at" | "level">} alert */
 export const isUnanswered = (alert) => alert.acknowledged_at === null && (isOpenAlert(alert) || isEndedUnseen(alert));
 
-/** Where a UAV is down away from its plan: [longitude, latitude] in degrees, or null. @param {Pick<Alert, "code" | "details">} alert @returns {[number, number] | null} */
+/**
+ * Where a UAV is down away from its plan: [longitude, latitude], or null.
+ * @param {Pick<Alert, "code" | "details">} alert @returns {[number, number] | null}
+ */
 export function downAt({ code, details }) {
   const { position } = /** @type {{ position?: unknown }} */ (details ?? {});
   const isPlace = Array.isArray(position) && position.length === 2 && position.every(Number.isFinite);

@@ -1,4 +1,4 @@
-/** The tokens that the map draws with, read from the style sheet as they stand now. */
+/** Tokens of the map's colours, read from the present style sheet. */
 
 export const ROUTE_COUNT = 8;
 
@@ -30,10 +30,10 @@ const NAMES = {
 /** @typedef {{ [Name in keyof typeof NAMES]: string } & { routes: string[], fonts: string[], isDark: boolean }} Palette */
 
 /**
- * Place in the row of route colours, 1 to 8; a ninth UAV starts again.
+ * Place in the sequence of route colours, 1 to 8; the ninth UAV starts again at 1.
  *
  * @param {number} sequence place of the UAV in its mission
- * @param {readonly number[]} [colours] those of the mission, as the service gives them once it is sent to UAVs
+ * @param {readonly number[]} [colours] those of the mission, assigned by the service once it is sent to UAVs
  */
 export function routeNumber(sequence, colours = []) {
   const place = sequence % ROUTE_COUNT;

@@ -4,7 +4,7 @@ import { t, tn } from "../text.js";
 
 /** @import { Preflight, PreflightCheck, UavPreflight } from "../api_types.d.ts" */
 
-/** Whether simulated UAVs stand in for the mission's: null where they cannot. @typedef {"off" | "starting" | "running" | null} Stand */
+/** Whether simulated UAVs replace the mission's: null where they cannot. @typedef {"off" | "starting" | "running" | null} Stand */
 /**
  * The button: its text, whether it can be pressed (`why` is then empty), and what it leaves undone.
  *

@@ -5,7 +5,7 @@ import { distance_m } from "./geodesy.js";
 /** @import { Waypoint } from "../api_types.d.ts" */
 
 /**
- * Along a route's waypoints: where each stands, which legs leave the network, where targets are. All in metres flown.
+ * Profile along a route's waypoints: their places, legs off the network, and targets. All in metres flown.
  *
  * @param {readonly Waypoint[]} waypoints
  * @param {number} length_m

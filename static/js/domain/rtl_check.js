@@ -9,7 +9,7 @@ import { clockText, durationText, heightText, lengthText, percentText } from "..
 export const MIN_HOLD_S = 30; // a shorter hold is none
 
 /**
- * Of answers of the API; undefined while they are not there.
+ * A UAV's return from the API's answer; undefined before it has arrived.
  *
  * @param {ReturnCheck[] | null | undefined} returns
  * @param {number} place of the UAV in the mission
@@ -75,7 +75,7 @@ export function landingLines(landing) {
 }
 
 /**
- * How long it can stay where it is and still return and land with its reserve.
+ * The line on how long it can hold and still land with its reserve.
  *
  * @param {number | null | undefined} hold_s
  */
@@ -133,8 +133,8 @@ export function returnLinesOfAll(uavs) {
 }
 
 /**
- * What meets less than a straight return at once: along the route, at another height, or after a hold; null where that is as good, or
- * where there is nothing.
+ * A return with fewer obstructions than a straight one at once: along the route, at another height, or after a hold; null where there is
+ * no better one.
  *
  * @param {PresentReturn} check
  * @returns {Safer | null}
@@ -231,7 +231,7 @@ export function warningsOfAll(all) {
 }
 
 /**
- * Under its name on the panel: { words, image, level, title }; null while nothing is known.
+ * Status under its name on the panel: { words, image, level, title }; null while it is unknown.
  *
  * @param {ReturnCheck | null | undefined} check
  */

@@ -68,7 +68,7 @@ function entryHolds(entry, now, place) {
 }
 
 /**
- * schedule: the stored periods, or null for always. What cannot be read is not known, and counts like a zone in force.
+ * schedule: the stored periods, or null for always. An unreadable schedule is unknown, and counts like a zone in force.
  *
  * @param {SchedulePeriod[] | null} schedule
  * @param {number} now [ms]

@@ -142,7 +142,7 @@ class DrawPanel {
   }
 }
 
-/** In the order in which they stand. @param {Editor} editor */
+/** The tools in their order. @param {Editor} editor */
 function toolsOf(editor) {
   const moving = { title: t("Move the whole shape by dragging, or with the arrow keys") };
   return {
@@ -157,7 +157,7 @@ function toolsOf(editor) {
   };
 }
 
-/** Shows the tools that do something now. @param {ReturnType<typeof toolsOf>} tools @param {EditorState} state @param {Shape} shape */
+/** Show the tools that have an effect now. @param {ReturnType<typeof toolsOf>} tools @param {EditorState} state @param {Shape} shape */
 function showTools(tools, { isDrawing, isMoving, chosen, canUndo, canRedo }, shape) {
   const isWhole = shape.kind === "point" || shape.kind === "circle"; // drawn with one or two clicks, moved by its handle
   const hasNoParts = shape.kind !== "area" || isDrawing;

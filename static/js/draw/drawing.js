@@ -1,6 +1,6 @@
 /**
- * Where a drawing stands, as a value: { shape, growing }. `growing` is the ring [part, ring] that the next vertex goes to, null once the
- * shape is whole. Undo goes through these values, so that a step back is also a step back in what a click means.
+ * State of a drawing as a value: { shape, growing }. `growing` is the ring [part, ring] that the next vertex goes to, null once the shape
+ * is complete. Undo steps through these values, so that it also restores the effect of a click.
  */
 
 import {
@@ -65,7 +65,7 @@ export function ended(state) {
 }
 
 /**
- * Without the vertex that was placed last; a hole or part that has none is given up.
+ * Remove the vertex that was placed last; a hole or part without any is dropped.
  *
  * @param {Drawing} state
  * @returns {Drawing}

@@ -1,4 +1,4 @@
-/** Drawing and editing one shape on the map. What a click means is decided in drawing.js; the pointer is read in pointer.js. */
+/** Drawing and editing one shape on the map. drawing.js decides the effect of a click; pointer.js reads the pointer. */
 
 import * as drawings from "./drawing.js";
 import { createSteps } from "./history.js";
@@ -149,7 +149,7 @@ export class Editor {
     this.#onPreview(shape);
   }
 
-  /** One step; false where it changes nothing. @param {Drawing} drawing */
+  /** Apply one step; false where it changes nothing. @param {Drawing} drawing */
   take(drawing) {
     const isNew = this.#steps?.take(drawing) ?? false;
     if (isNew) this.notify();
@@ -162,7 +162,7 @@ export class Editor {
   }
 
   /**
-   * A vertex goes where it was put at once, and to the last digit of what it snapped to when that is known.
+   * Place a vertex at once, and exactly at the feature that it snapped to once that is loaded.
    *
    * @param {VertexPath} at
    * @param {Snapped | null} snapped

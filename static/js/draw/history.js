@@ -29,7 +29,7 @@ export function createSteps(first) {
     get canRedo() {
       return future.length > 0;
     },
-    /** One step, unless it changes nothing. @param {Value} value */
+    /** Add one step, unless it changes nothing. @param {Value} value */
     take(value) {
       if (isSame(value, now)) return false;
       past.push(now);

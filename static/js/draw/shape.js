@@ -49,7 +49,7 @@ export function shapeOf(geometry, circle = null) {
   return { kind: "area", parts: polygons.map((rings) => rings.map((ring) => open(ring.map(flat)))), radius_m: null };
 }
 
-/** GeoJSON; null as long as there is too little of it. @param {Shape} shape @returns {DrawnGeometry | null} */
+/** GeoJSON; null as long as the shape has too few vertices. @param {Shape} shape @returns {DrawnGeometry | null} */
 export function geometryOf(shape) {
   if (shape.kind === "circle") return null;
   const parts = shape.parts
@@ -119,7 +119,7 @@ export const append = (shape, at, position) => withRing(shape, at, (ring) => [..
 export const dropLast = (shape, at) => withRing(shape, at, (ring) => ring.slice(0, -1));
 
 /**
- * Without the vertex; a ring that is left with too few goes with it, except the last of all: then it is the same shape.
+ * Remove the vertex. A ring left with too few vertices is removed too; if it is the last one, the shape is unchanged.
  *
  * @param {Shape} shape
  * @param {VertexPath} at
@@ -162,7 +162,7 @@ export function stubOf(shape) {
   return null;
 }
 
-/** Without rings that were begun and not finished. @param {Shape} shape @returns {Shape} */
+/** The shape without unfinished rings. @param {Shape} shape @returns {Shape} */
 export function withoutStubs(shape) {
   if (shape.kind !== "area") return shape;
   const parts = shape.parts
@@ -211,7 +211,7 @@ export const moveAll = (shape, [east, north]) => ({
 
 /** @param {Shape} shape @param {number} radius_m @returns {Shape} */
 export const withRadius = (shape, radius_m) => ({ ...shape, radius_m });
-/** Where the handle of a circle's radius stands: east of its centre. @param {Shape} shape */
+/** Position of the handle of a circle's radius: east of its centre. @param {Shape} shape */
 export function radiusHandle(shape) {
   const circle = circleOf(shape);
   return circle && towards(circle.centre, 90, circle.radius_m);

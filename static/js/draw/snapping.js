@@ -26,7 +26,7 @@ function ringsOf(geometry) {
 const isLine = (geometry) => geometry.type === "LineString" || geometry.type === "MultiLineString";
 
 /**
- * { position, asset, isVertex } of the nearest vertex within reach, else of the nearest place on a line; null where there is nothing.
+ * { position, asset, isVertex } of the nearest vertex within reach, else of the nearest place on a line; null without any.
  * `own` are vertices of the shape itself; they have no asset.
  *
  * @param {MapLibreMap} map
@@ -93,7 +93,7 @@ async function readShape(asset) {
 }
 
 /**
- * The asset's own vertex, else the place on its own line, to the last digit; the position itself where the asset cannot be had.
+ * The asset's own vertex, else the place on its line, in full precision; the position itself where the asset cannot be loaded.
  *
  * @param {MapLibreMap} map
  * @param {Snapped} snapped

@@ -35,7 +35,7 @@ export interface Snapped {
   isVertex: boolean;
 }
 
-/** What an editor tells after each step. */
+/** Report of an editor after each step. */
 export interface EditorState {
   shape: Shape | null;
   faults: Fault[];

@@ -24,7 +24,7 @@ const WORDS = {
 const reported = new WeakMap(); // shapes are immutable: results are cached
 
 /**
- * [{ message, position, sides: [[from, to], …] }]; an empty list where nothing is wrong. Of a ring that is `growing` the side that closes it is not there yet.
+ * [{ message, position, sides: [[from, to], …] }]; an empty list without faults. A `growing` ring does not have its closing side yet.
  *
  * @param {Shape} shape
  * @param {VertexPath | null} [growing]

@@ -80,7 +80,7 @@ function drawing(connection) {
 }
 
 /**
- * Draws itself into `place` until that is taken off the page.
+ * Draw into `place` until it is removed from the page.
  *
  * @param {HTMLElement} place
  * @param {{ id: number }} uav

@@ -119,7 +119,7 @@ function insistQuestion({ why, act, again }, keep) {
 /**
  * @param {CredentialKind} kind
  * @param {Credential | undefined} credential
- * @param {Credential | undefined} earlier that counts until the newest was used
+ * @param {Credential | undefined} earlier valid until the newest was used
  * @param {{ make?: (() => unknown) | null, ask?: (() => unknown) | null }} acts null: there is no such button
  * @param {...Child} below
  */

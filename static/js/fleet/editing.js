@@ -14,7 +14,7 @@ import { readRow } from "./words.js";
 /** @import { Body, FleetMap, FleetPage, FleetState, Form, KeptEdit, Position, Row, RowAnswer, Store, Tab } from "./types.d.ts" */
 
 /**
- * What the page around the edit does for it.
+ * Functions that the page offers to the edit.
  *
  * @typedef {object} EditingContext
  * @property {Store<FleetState>} store
@@ -28,7 +28,7 @@ import { readRow } from "./words.js";
  * @property {(tab: Tab, id: number) => Promise<void>} choose
  * @property {() => void} close
  * @property {() => Promise<void>} load
- * @property {() => number} moment another number once something else was begun
+ * @property {() => number} moment a number that changes once another act has begun
  */
 /**
  * @typedef {object} Edit
@@ -121,7 +121,7 @@ export class Editing {
     else this.#context.close();
   }
 
-  /** Where a new one stands at first: the middle of the map. @returns {Position} */
+  /** The initial place of a new row: the middle of the map. @returns {Position} */
   #placeOfNew() {
     const { store, page, map } = this.#context;
     const { bases, uavs } = store.state;
@@ -153,7 +153,7 @@ export class Editing {
     await this.start(row, kept);
   }
 
-  /** Unless something else was begun in the meantime. @param {Tab} tab @param {number} id */
+  /** Show the stored row, unless another act has begun meanwhile. @param {Tab} tab @param {number} id */
   async #showAsStored(tab, id) {
     const { moment, load, choose } = this.#context;
     const now = moment();

@@ -1,4 +1,4 @@
-/** Where UAVs and bases stand, and the pin that sets the place of the one that is edited. */
+/** Positions of UAVs and bases, and the pin that sets the place of the edited one. */
 
 import { byId, h, icon } from "../dom.js";
 import { setAttribution } from "../map/furniture.js";
@@ -90,7 +90,7 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
 }
 
 /**
- * UAVs that stand at one place are put below each other.
+ * UAVs at one place are drawn below each other.
  *
  * @param {Places} places
  * @param {Chosen | null} chosen

@@ -328,7 +328,7 @@ async function refresh(id) {
     await choose(store.state.tab, id, { keepFocus: true });
 }
 
-/** Gives the chosen UAV another state. @param {UavState} state */
+/** Set the state of the chosen UAV. @param {UavState} state */
 function put(state) {
   const row = chosenRow();
   if (!row || !("state" in row)) return;

@@ -64,7 +64,7 @@ export interface Kind<Item extends Row = Row> {
   none: { title: string; text: string };
 }
 
-/** What is looked at. */
+/** The selected row and tab. */
 export interface Chosen {
   tab: Tab;
   id: number;

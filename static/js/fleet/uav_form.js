@@ -64,7 +64,7 @@ export function placeFields(position, onMove) {
     ),
     fields: [latitude, longitude],
     read,
-    /** Whether the user has put it somewhere. */
+    /** Whether the user has set the place. */
     isTouched: () => isTouched,
     /** The pin was moved. @param {Position} to */
     set(to) {
@@ -139,7 +139,7 @@ function figureFields(uav) {
   };
 }
 
-/** What counts where a UAV has no range and speed of its own. @param {FleetType | undefined} type */
+/** The values in effect where a UAV has no range and speed of its own. @param {FleetType | undefined} type */
 const usualText = (type) =>
   type
     ? t("Blank: {range} and {speed} of the type.", {
@@ -149,7 +149,7 @@ const usualText = (type) =>
     : t("Blank: range not limited, default speed.");
 
 /**
- * The figures that a UAV may have of its own. What counts in an empty field stands in it in grey.
+ * The figures that a UAV may override. The value in effect is the placeholder of an empty field.
  *
  * @param {UavBody} uav
  * @param {Field<number | null>} type the field of its type
@@ -191,7 +191,7 @@ function ownFigures(uav, type, types) {
 }
 
 /**
- * The button that puts a UAV at its base. A new one is put there with the choice of the base, unless its place was chosen before.
+ * The button that moves a UAV to its base. A new one moves there with the choice of the base, unless its place was chosen before.
  *
  * @param {Field<number | null>} base the field of its base
  * @param {FormContext} context

@@ -16,7 +16,7 @@ const list = (rows) =>
   );
 
 /**
- * Asks which version counts. Resolves to null where the user continues editing.
+ * Ask which version to keep. Resolves to null where the user continues editing.
  *
  * @param {object} versions facts under the same names
  * @param {string} versions.changed_by

@@ -3,7 +3,7 @@
 /** @param {string} key in the browser's storage */
 export function createDraft(key) {
   return {
-    /** Returns whether it is kept. @param {object | null} value */
+    /** Store the draft. Returns whether it was stored. @param {object | null} value */
     keep(value) {
       try {
         localStorage.setItem(key, JSON.stringify({ ...value, kept_at: new Date().toISOString() }));
@@ -23,7 +23,7 @@ export function createDraft(key) {
       try {
         localStorage.removeItem(key);
       } catch {
-        /* storage is closed: nothing was kept */
+        /* storage is unavailable: no draft */
       }
     },
   };

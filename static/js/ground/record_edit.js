@@ -252,7 +252,7 @@ export class RecordEdit {
     this.editor.stop();
   }
 
-  /** Asks the server about the shape, once it has rested. @param {EditorState} state */
+  /** Request a check of the shape from the server, once it has not changed for a moment. @param {EditorState} state */
   #checkSoon({ shape, faults, isDrawing }) {
     clearTimeout(this.#checkTimer);
     if (faults.length || isDrawing || !shape) return;

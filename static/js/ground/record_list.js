@@ -52,7 +52,7 @@ export class RecordList {
     this.#inView.addEventListener("change", () => this.load());
   }
 
-  /** Whether it shows only what the map shows. */
+  /** Whether the list is restricted to the map's view. */
   get followsView() {
     return this.#inView.checked;
   }

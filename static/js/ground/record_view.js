@@ -146,7 +146,7 @@ export class RecordView {
     return part;
   }
 
-  /** Does something with the chosen record, then reads list and map again. @param {() => Promise<unknown>} act @param {string} [words] */
+  /** Carry out an act on the chosen record, then reload list and map. @param {() => Promise<unknown>} act @param {string} [words] */
   async #change(act, words) {
     try {
       await act();

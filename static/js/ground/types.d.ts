@@ -10,7 +10,7 @@ export interface GroundPage extends MapPage {
   extent: Box | null;
 }
 
-/** What the map tells a page; each is optional. */
+/** Events of the map for a page; each is optional. */
 export interface GroundHandlers {
   click?(thing: MapThing | null, place: Position, point: ScreenPoint): unknown;
   hover?(thing: MapThing | null, point: ScreenPoint | null, place: Position | null): unknown;

@@ -197,7 +197,7 @@ const featureOf = ({ id, properties, geometry: own }, geometry) => ({
 });
 
 /**
- * Where a geometry's sign stands: on a line its middle vertex, on an area its northernmost one, where no name is drawn.
+ * Position of a geometry's sign: on a line its middle vertex, on an area its northernmost one, where no name is drawn.
  *
  * @param {Geometry} geometry
  */

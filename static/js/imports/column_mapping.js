@@ -8,7 +8,7 @@ import { countText } from "../units.js";
 
 /** @type {Record<string, string>} */
 const KINDS = { tower: t("Towers"), line: t("Power lines"), railway: t("Railways"), bridge: t("Bridges") };
-/** What each column means, by its name. @typedef {Record<string, string>} Meanings */
+/** The meaning of each column, by its name. @typedef {Record<string, string>} Meanings */
 
 const BY_GEOMETRY = "by_geometry";
 const BY_COLUMN = "column";
@@ -91,7 +91,7 @@ export function withMeaning(meanings, name, meaning) {
 let made = 0;
 
 /**
- * A form for the mapping; readAgain(parameters) has the file read with it. Null while nothing can be decided.
+ * A form for the mapping; readAgain(parameters) reads the file again with it. Null while no decision is possible.
  *
  * @param {Proposal} proposal
  * @param {(parameters: Parameters) => void} readAgain

@@ -1,4 +1,4 @@
-/** How far a job is, and the way to stop it. */
+/** Progress of a job, and the button that stops it. */
 
 import { h } from "../dom.js";
 import { t } from "../text.js";
@@ -6,7 +6,7 @@ import { percentText } from "../units.js";
 
 /** @import { ProposalJob } from "../api_types.d.ts" */
 
-/** `cancel()` asks the job to stop. @param {string} what @param {() => Promise<void>} cancel */
+/** `cancel()` requests the job's stop. @param {string} what @param {() => Promise<void>} cancel */
 export function jobLine(what, cancel) {
   const words = h("span", {});
   const share = h("span", {});

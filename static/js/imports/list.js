@@ -70,7 +70,7 @@ function whatOf({ kind, summary, difference }) {
   return summary.needs_mapping ? t("Columns to be explained") : sentence.replace(/\.$/, "");
 }
 
-/** How far it is, or what came of it. @param {Proposal} proposal */
+/** Its progress, or its result. @param {Proposal} proposal */
 function progressOf(proposal) {
   const { state, job, faults } = proposal;
   if (isOpen(proposal)) return job?.state === "running" ? percentText(job.progress * 100) : t("waiting");

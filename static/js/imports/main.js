@@ -1,4 +1,4 @@
-/** The page "Imports": composes what comes in, the list, the open one with its difference, and the map. */
+/** The page "Imports": composes uploads, the list, the open import with its difference, and the map. */
 
 import { ApiError, get, patch, post, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
@@ -124,7 +124,7 @@ function put(proposal) {
   showFacts(next);
 }
 
-/** Puts what the server answered. @param {Promise<Answer>} answer */
+/** Show the server's answer. @param {Promise<Answer>} answer */
 async function putAnswer(answer) {
   put(/** @type {Proposal} */ ((await answer).data));
 }

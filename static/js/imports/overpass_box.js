@@ -1,4 +1,4 @@
-/** "Take the visible area from Overpass": how large it is, how large it may be, and the button. */
+/** "Take the visible area from Overpass": its size, the limit, and the button. */
 
 import { byId } from "../dom.js";
 import { t } from "../text.js";
@@ -25,7 +25,7 @@ const text = (area_km2) => areaText(area_km2 * 1e6);
 /**
  * @param {ReturnType<typeof mountGroundMap>} map
  * @param {{ most_km2: number }} limit
- * @param {(box: number[]) => Promise<unknown>} take asks for it
+ * @param {(box: number[]) => Promise<unknown>} take starts it
  */
 export function mountOverpassBox(map, limit, take) {
   byId("overpass").hidden = false;

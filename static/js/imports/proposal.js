@@ -337,7 +337,7 @@ function facts({ summary, provenance, state }) {
   );
 }
 
-/** Earlier states of a zone set, each one press away from being proposed again. @param {string} setName @param {ProposalActs} acts */
+/** Earlier states of a zone set, with a button that proposes each again. @param {string} setName @param {ProposalActs} acts */
 function versions(setName, acts) {
   const list = h("ol", { class: "versions" });
   const details = h("details", { class: "import-facts" }, h("summary", {}, t("Roll the set back")), list);

@@ -1,4 +1,4 @@
-/** Shapes of the imports page; what the API leaves open is said here. */
+/** Types of the imports page, which refine open types of the API. */
 
 import type {
   Proposal as ApiProposal,
@@ -52,7 +52,7 @@ export interface UnreadRecord {
   message: string;
   name: string;
   position: number[] | null;
-  /** west, south, east, north of what can be read of it */
+  /** west, south, east, north of its readable part */
   bbox: number[] | null;
 }
 

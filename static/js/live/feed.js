@@ -12,7 +12,7 @@ import { applyChanges, nothingShown, shownAfterSnapshot } from "./shown.js";
 
 export const LIVE = "live"; // notified of each change at once
 export const ASKED = "asked"; // by HTTP, every two seconds
-export const CROWDED = "crowded"; // by HTTP, too: as many websockets are open as this user, or this network, may have
+export const CROWDED = "crowded"; // by HTTP, too: this user, or this network, has the maximum of open websockets
 export const CONNECTING = "connecting"; // neither: the data on the page are as old as their times
 export const SIGNED_OUT = "signed-out"; // for good
 export const GONE = "gone"; // the mission is deleted: for good
@@ -25,7 +25,7 @@ const ASK_EVERY_MS = 2_000;
 const ASK_WITHIN_MS = 8_000;
 const FIRST_PAUSE_MS = 500;
 const MAX_PAUSE_MS = 5_000;
-const RESTARTS = 1012; // the code of a websocket whose program is being stopped
+const RESTARTS = 1012; // close code of a websocket whose server process is stopping
 const TOO_MANY = 4429; // after a refusal because too many are open
 const CROWDED_PAUSE_MS = 60_000; // then the page tries again: others may have been closed
 
@@ -46,7 +46,7 @@ const CROWDED_PAUSE_MS = 60_000; // then the page tries again: others may have b
  */
 
 /**
- * How long to wait before the nth try in a row [ms]: longer each time, and not all pages at once.
+ * Pause before the nth retry in a row [ms]: longer each time, with jitter between pages.
  *
  * @param {number} failures
  * @param {() => number} [random]
@@ -92,7 +92,7 @@ class Feed {
   shown = nothingShown();
   /** @type {FeedState | null} */
   state = null;
-  /** When the last message came, by the server's clock; null before the first. @type {number | null} */
+  /** When the last message arrived, by the server's clock; null before the first. @type {number | null} */
   received_ms = null;
   since_ms = 0; // by the server's clock
 
@@ -119,7 +119,7 @@ class Feed {
     if (!Socket) this.#startAsking();
   }
 
-  /** How long ago the last message came [ms]; 0 before the first: then nothing is shown yet. */
+  /** Time since the last message [ms]; 0 before the first: no data are shown yet. */
   silent_ms() {
     return this.received_ms === null ? 0 : Math.max(0, this.#clock.now_ms() - this.received_ms);
   }
@@ -215,7 +215,7 @@ class Feed {
     this.#showEverything(snapshot.live);
   }
 
-  /** Asks for everything once: messages between here and the answer are of no use. @param {Message} message */
+  /** Request everything once: messages before the answer are dropped. @param {Message} message */
   #askAgain(message) {
     if (this.#sequence || message.type === "keepalive") this.#send({ type: "resync" });
     this.#sequence = 0;

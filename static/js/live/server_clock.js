@@ -1,4 +1,4 @@
-/** The server's time on a page whose own clock may be wrong: ages are counted by it. */
+/** The server's time, for a page whose own clock may be wrong: ages are computed with it. */
 
 const WINDOW_MS = 60_000;
 
@@ -9,7 +9,7 @@ const WINDOW_MS = 60_000;
 export function serverClock(ticks_ms = () => performance.now(), first_ms = Date.now()) {
   const guess_ms = first_ms - ticks_ms();
   /** @type {{ at_ms: number, ahead_ms: number }[]} */
-  let received = []; // what the server's clock is ahead of ours, at least: a word takes its time to come, so the largest is the best
+  let received = []; // lower bound of the server's offset from our clock: a message has a delay, so the largest is the best
   const newest = () => received.filter(({ at_ms }) => ticks_ms() - at_ms <= WINDOW_MS);
   return {
     /** @param {string} serverTime */

@@ -1,4 +1,4 @@
-/** The view as part of the page's address, #map=zoom/latitude/longitude, and whether one is worth going to. Values in, values out. */
+/** The view as part of the page's address, #map=zoom/latitude/longitude, and whether a view shows any data. Values in, values out. */
 
 /** @import { Box, Position } from "./types.d.ts" */
 
@@ -27,7 +27,7 @@ export function hashOf({ zoom, centre: [longitude, latitude] }) {
 }
 
 /**
- * Whether [west, south, east, north] can be made out in a view of this size in px. Without an extent every view is as good.
+ * Whether [west, south, east, north] is recognisable in a view of this size in px. Without an extent every view is accepted.
  *
  * @param {{ zoom: number, centre: Position }} view
  * @param {[number, number]} size width, height [px]

@@ -1,4 +1,4 @@
-/** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
+/** The feature at the pointer: the nearest one within reach, in the order of picking. */
 
 import { h } from "../dom.js";
 import { swallowDrawnClick } from "./drawn_click.js";

@@ -23,12 +23,12 @@ const COPIED_DIGITS = 6; // some 0.1 m
 const ASK_AGAIN_MS = 8_000;
 
 /**
- * What a page does with its map's controls.
+ * Callbacks of a page for its map's controls.
  *
  * @typedef {object} ControlActs
  * @property {() => unknown} fit
  * @property {(palette: Palette) => void} [recoloured]
- * @property {() => boolean} [isBusy] whether the pointer belongs to something else
+ * @property {() => boolean} [isBusy] whether another tool uses the pointer
  * @property {(isOn: boolean) => void} [measures]
  * @property {() => SwitchedLayer[]} [layers] more of them for the menu
  */
@@ -106,8 +106,8 @@ export function mountControls(view, page, act) {
 }
 
 /**
- * The focus ring is for the keyboard: a click into the map gives it the focus too, and a key pressed later would show the ring. Tests ask
- * where a position is on the screen, and whether the map is at rest.
+ * Limit the focus ring to the keyboard: a click into the map focuses it too, and a later key would show the ring. Tests read the screen
+ * position of a place, and whether the map is idle.
  *
  * @param {MapLibreMap} map
  * @param {HTMLElement} container

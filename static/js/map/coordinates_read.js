@@ -15,7 +15,7 @@ const ANGLES = [
 ];
 
 /**
- * Signs of all keyboards to the plain ones; a decimal comma to a point, where the two figures are parted by something else.
+ * Replace the signs of all keyboards by plain ones; a decimal comma becomes a point, where another sign separates the two figures.
  *
  * @param {string} text
  */
@@ -33,7 +33,7 @@ function plain(text) {
 }
 
 /**
- * "39 57 36" is degrees, minutes, seconds too: with letters, blanks may stand where signs belong.
+ * "39 57 36" is degrees, minutes, seconds too: with letters, blanks may replace signs.
  *
  * @param {string} text
  */

@@ -1,4 +1,4 @@
-/** The click that ends a drawing on the map, or drops it, picks nothing. */
+/** Swallow the click that ends or drops a drawing on the map, so that it picks nothing. */
 
 /**
  * Returns { begins(), ends() }: a press that may become a drawing, and a drawing that has come to its end.

@@ -50,7 +50,7 @@ export function setAttribution(sources) {
 }
 
 /**
- * Shows words beside the pointer after 300 ms, at once with `soon`; null takes them away. What `make` is given shows other words later.
+ * Show text beside the pointer after 300 ms, at once with `soon`; null hides it. `make` receives a function that replaces the text later.
  *
  * @param {HTMLElement} frame
  * @returns {Tip}

@@ -77,7 +77,7 @@ export function drawLassos(map, canvas, on) {
   );
 }
 
-/** Whether a drawing is meant to go round something. @param {readonly (readonly number[])[]} points */
+/** Whether a drawing is wide enough to enclose an area. @param {readonly (readonly number[])[]} points */
 export function isWide(points) {
   /** @param {number[]} values */
   const spanOf = (values) => Math.max(...values) - Math.min(...values);

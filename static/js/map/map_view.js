@@ -14,11 +14,11 @@ import { maplibre } from "./maplibre.js";
 const WORLD = [-12, 25, 40, 62]; // where there are no map data
 
 const NEAREST_FIT = 15;
-const CONTROLS_PX = 68; // they stand at the right edge
+const CONTROLS_PX = 68; // they are at the right edge
 const FOOT_GAP_PX = 24;
 
 /**
- * The map opens at the view in the page's address if that shows something of `extent`, else at `bounds`.
+ * Create the map. It opens at the view in the page's address if that shows some of `extent`, else at `bounds`.
  *
  * @param {HTMLElement} container
  * @param {MapOptions} options

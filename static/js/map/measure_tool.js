@@ -1,4 +1,4 @@
-/** Measuring on the map: points are clicked, lengths stand at them; three points or more also have an area. */
+/** Measuring on the map: points are clicked and labelled with lengths; three points or more also have an area. */
 
 import { h } from "../dom.js";
 import { distance_m, pathLength_m, ringArea_m2 } from "../domain/geodesy.js";
@@ -68,7 +68,7 @@ export function measureWords(points, pointer = null) {
 /**
  * @typedef {object} MeasureOptions
  * @property {(isOn: boolean) => void} [onSwitch]
- * @property {() => boolean} [isBusy] whether the pointer belongs to something else
+ * @property {() => boolean} [isBusy] whether another tool uses the pointer
  */
 
 /**
@@ -128,7 +128,7 @@ class Measure {
     this.#onSwitch(true);
   }
 
-  /** Returns whether something was measured. */
+  /** End measuring. Returns whether a measurement was active. */
   end = () => {
     if (this.#points === null) return false;
     this.#points = null;
@@ -181,7 +181,7 @@ class Measure {
     if (this.#actOf(event)) event.preventDefault();
   }
 
-  /** Returns whether the key meant something. @param {KeyboardEvent} event */
+  /** The act of a key; returns whether the key has one. @param {KeyboardEvent} event */
   #actOf({ key, target }) {
     if (key === "Escape") return this.end();
     if (key === "Backspace" || key === "Delete") {

@@ -37,7 +37,7 @@ export const pillWidth = (label) => Math.max(MIN_WIDTH_PX, label.length * LETTER
 const isSameKind = (a, b) => a.sequence === b.sequence && a.letter === b.letter && a.isMissed === b.isMissed;
 
 /**
- * Groups of pills to draw, given their places on the screen: [{ members, x, y, label }]. Those of one UAV that would overlap become one.
+ * Groups of pills to draw, given their places on the screen: [{ members, x, y, label }]. Overlapping pills of one UAV are merged.
  *
  * @template {Pill} Item
  * @param {Item[]} pills
@@ -48,7 +48,7 @@ export function mergePills(pills) {
 }
 
 /**
- * Groups of UAVs that would stand on each other or on each other's names: [{ members, x, y, label }]. x is where the mark stands, its label to the right.
+ * Groups of UAVs whose marks or names would overlap: [{ members, x, y, label }]. x is the place of the mark, its label is to the right.
  *
  * @template {Dart} Item
  * @param {Item[]} darts
@@ -63,7 +63,7 @@ export function mergeDarts(darts) {
 }
 
 /**
- * A group stands where its first member does.
+ * A group at the place of its first member.
  *
  * @template {{ x: number, y: number }} Item
  * @param {Item[]} items

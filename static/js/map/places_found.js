@@ -41,7 +41,7 @@ export function coordinatesFound(text) {
 }
 
 /**
- * Of [{ name, position, icon, detail }], those whose name holds the text; at most four.
+ * Those of [{ name, position, icon, detail }] whose name contains the text; at most four.
  *
  * @param {string} text
  * @param {NamedThing[]} things
@@ -88,8 +88,8 @@ function boxOf(coordinates) {
 }
 
 /**
- * Places for a text: [{ icon, label, detail, and position with zoom, or box }]. A text that is a pair of coordinates names nothing else.
- * `things` are what the page knows by name, such as UAVs: [{ name, position, icon, detail }].
+ * Places for a text: [{ icon, label, detail, and position with zoom, or box }]. A pair of coordinates has no other results. `things` are
+ * named features of the page, such as UAVs: [{ name, position, icon, detail }].
  *
  * @param {string} text
  * @param {{ signal?: AbortSignal, things?: NamedThing[] }} [options]

@@ -78,7 +78,7 @@ export interface MapView {
   fit(box: Box | null, how?: { animate?: boolean }): void;
 }
 
-/** What MapLibre says of a fault: which source, which tile. */
+/** A fault of MapLibre: its source and tile. */
 export interface MapFault {
   sourceId?: string;
   error?: { name?: string; message?: string; status?: number };

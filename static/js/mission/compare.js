@@ -100,8 +100,7 @@ function meritOf({ result, targets }) {
 }
 
 /**
- * Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may
- * have moved.
+ * Whether only the search can differ between the two: the same network, zones, heights, and available UAVs; bases may have moved.
  *
  * @param {Plan} a
  * @param {Plan} b
@@ -183,7 +182,7 @@ export function endsBetween(old, now) {
   return { moved_m: moved_m < MIN_MOVED_M ? 0 : moved_m, from, to };
 }
 
-/** A route in short, as the drawing of a strip takes it. @param {ShortRoute} route */
+/** A route in short form for the drawing of a strip. @param {ShortRoute} route */
 export function profileOfSummary({ length_m, stops, off_network }) {
   const cuts = [...new Set([0, length_m, ...off_network.flat()])]
     .filter((at) => at >= 0 && at <= length_m)

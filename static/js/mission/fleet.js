@@ -7,7 +7,7 @@ import { exactEnergyText, lengthText, speedText } from "../units.js";
 /** @import { FleetUav, MissionPageState, PickedUav, StandingUav } from "./types.d.ts" */
 
 /**
- * What the fleet knows of a UAV as it is now; a mission keeps its own name, start, figures, sensors and end.
+ * The fleet's present facts on a UAV; a mission keeps its own name, start, figures, sensors and end.
  *
  * @param {FleetUav} uav
  */
@@ -56,7 +56,7 @@ export function inFleetOrder(state) {
   return standingUavs(state).sort((a, b) => place(a) - place(b));
 }
 
-/** Whether it may be taken along: in maintenance or retired it may not. @param {Pick<PickedUav, "state">} uav */
+/** Whether it may be added: not in maintenance or retired. @param {Pick<PickedUav, "state">} uav */
 export const canFly = ({ state }) => state === undefined || state === "active";
 
 /**
@@ -95,7 +95,7 @@ const END_WORDS = {
 };
 
 /**
- * Of a full battery [Wh]: the mission's, else the fleet's; null where its energy is not counted.
+ * Capacity of the battery [Wh]: the mission's, else the fleet's; null where its energy is not counted.
  *
  * @param {Pick<PickedUav, "battery_wh" | "usual">} uav
  */

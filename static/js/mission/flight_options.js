@@ -83,7 +83,7 @@ export function conditionsText(conditions) {
 export const departureText = (departs_at) => `${dayText(departs_at)}, ${clockText(departs_at)}`;
 
 /**
- * When something happens that many seconds after the departure: by the clock where there is one, else "+12:05".
+ * The time so many seconds after the departure: by the clock where there is one, else "+12:05".
  *
  * @param {string | null | undefined} departs_at
  * @param {number | null | undefined} after_s
@@ -95,5 +95,5 @@ export function timeAt(departs_at, after_s) {
   return dayText(moment) === dayText(departs_at) ? clockText(moment) : departureText(moment);
 }
 
-/** The next full minute: what "now" means for a departure. @param {number} now_ms */
+/** The next full minute: "now" as a departure. @param {number} now_ms */
 export const nextMinute = (now_ms) => new Date(Math.ceil(now_ms / 60_000) * 60_000).toISOString();

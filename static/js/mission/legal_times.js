@@ -43,7 +43,7 @@ export function legalTimesOf({ from, to, windows, zones, margin_s = 0, height_ma
   };
 }
 
-/** How far along the bar, 0 to 1. @param {Span} bar @param {number} moment */
+/** Position along the bar, 0 to 1. @param {Span} bar @param {number} moment */
 export const shareOf = ({ from_ms, to_ms }, moment) => Math.min(1, Math.max(0, (moment - from_ms) / (to_ms - from_ms)));
 
 /** The moment at a share of the bar, on a full step by the clock. @param {Span} bar @param {number} share */
@@ -147,9 +147,8 @@ function departureWords(times, moment) {
 }
 
 /**
- * "Heron, A1 to A2, after A4; Kite, start to B1": on which ways between targets routes meet a zone; the climb at the
- * start is the take-off.
- * legs: [{ uav: its name, way: see wayOf }].
+ * "Heron, A1 to A2, after A4; Kite, start to B1": between which targets routes meet a zone; the climb at the start is the take-off. legs:
+ * [{ uav: its name, way: see wayOf }].
  *
  * @param {{ uav: string, way: string }[]} legs
  */
@@ -164,7 +163,7 @@ export function legsText(legs) {
 }
 
 /**
- * Between which targets, as the map numbers them, a leg of a route lies that begins at this waypoint.
+ * The targets, by their numbers on the map, between which the leg lies that begins at this waypoint.
  *
  * @param {Pick<ShownRoute, "letter" | "waypoints">} route
  * @param {number} leg
@@ -183,7 +182,7 @@ const MAX_COMPARED = 12; // targets, of which departures are compared
 const MIN_M = 1;
 
 /**
- * Whether looking for a better departure may be of use: a zone is in the way of the plan, for a while or for ever.
+ * Whether a search for a better departure can help: a zone obstructs the plan, for a time or permanently.
  *
  * @param {Pick<Plan, "gap_of" | "unassigned">} plan
  * @param {number} targets

@@ -25,8 +25,8 @@ export function refsIn(text) {
 }
 
 /**
- * The references of a list, and by reference the external id that its target is to have. A list whose first line names a
- * column `external_id` is a table: references stand in its column `ref`, or in the first of the others.
+ * The references of a list, and by reference the external id for its target. A list whose first line names a column `external_id` is a
+ * table: references are in its column `ref`, or in the first of the others.
  *
  * @param {string} text
  * @returns {{ refs: string[], externalIds: Map<string, string> }}
@@ -46,7 +46,7 @@ export function listIn(text) {
   };
 }
 
-/** Of a line of a table; a sign between quotes parts nothing. @param {string} line @param {string} sign */
+/** Cells of a line of a table; a sign between quotes does not separate. @param {string} line @param {string} sign */
 function cellsOf(line, sign) {
   const cells = line.match(new RegExp(`(?:"(?:[^"]|"")*"|[^${sign}])+|(?<=^|${sign})(?=${sign}|$)`, "g")) ?? [];
   return cells.map((cell) =>

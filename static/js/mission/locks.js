@@ -19,8 +19,7 @@ const isHeldAt = ({ at_start, at_end }) => at_start || at_end;
 const isWholeRoute = ({ at_start, at_end }) => Boolean(at_start && at_end);
 
 /**
- * Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something
- * more.
+ * Whether no plan can keep both: they share a target, claim the same end of a route, or one is a whole route and the other adds to it.
  *
  * @param {Lock} a
  * @param {Lock} b
@@ -37,7 +36,7 @@ export function areContrary(a, b) {
 const isOneUav = (selection, uav) => uavsByName(selection).some(({ name }) => name === uav);
 
 /**
- * The order of each UAV's targets in a plan; one that is visited in several pieces stands once.
+ * The order of each UAV's targets in a plan; one that is visited in several pieces appears once.
  *
  * @param {Pick<ShownPlan, "result" | "targets"> | null} plan
  * @returns {FlownOrder[]}
@@ -76,7 +75,7 @@ const without = (locks, keys) =>
   );
 
 /**
- * Locks and ties of targets and UAVs that are still there; the same selection where nothing has gone.
+ * Locks and ties of existing targets and UAVs; the same selection where none was removed.
  *
  * @param {MissionSelection} selection
  * @returns {MissionSelection}
@@ -313,11 +312,8 @@ export function tied(selection, keys, uav) {
 }
 
 /**
- * Where targets stand on the strip of a route whose order is another one as wished: [{ target, at, isMoved }], `at` in
- * metres flown.
- *
- * stops: [{ target, at }] as planned. What keeps its place among the others stays where it is; what moves stands
- * between its neighbours.
+ * Places of targets on the strip of a route with a wished order: [{ target, at, isMoved }], `at` in metres flown. stops: [{ target, at }]
+ * as planned. Targets that keep their relative order keep their place; moved ones are placed between their neighbours.
  *
  * @param {{ target: string, at: number }[]} stops
  * @param {string[]} wished
@@ -347,7 +343,7 @@ export function stopsWished(stops, wished, length_m) {
 }
 
 /**
- * Indices of the longest part of a list that rises; undefined values are never in it.
+ * Indices of the longest rising subsequence of a list, without undefined values.
  *
  * @param {(number | undefined)[]} values
  */

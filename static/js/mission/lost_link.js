@@ -1,7 +1,4 @@
-/**
- * What UAVs do when their link is lost, where they may land then, and what the server's check of it means. Values in,
- * values out.
- */
+/** Lost-link actions of UAVs, their rally points, and the result of the server's check. Values in, values out. */
 
 import { distance_m } from "../domain/geodesy.js";
 import { rallyName, routeLetter } from "../domain/palette.js";
@@ -263,7 +260,7 @@ export function uncountedText(plan) {
   return names.length ? t("Energy is not checked for {uavs}: no battery is stated.", { uavs: names.join(", ") }) : "";
 }
 
-/** Rally points in which nothing may land, whether a UAV would now return to them or not. @param {ShownPlan} plan */
+/** Rally points inside zones in which no UAV may land, whether or not a UAV would now return to them. @param {ShownPlan} plan */
 export function inZonesText(plan) {
   const found = checkOf(plan).rally_points_in_zones ?? [];
   return found
@@ -277,7 +274,7 @@ export function inZonesText(plan) {
 }
 
 /**
- * Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before.
+ * The heights that the check assumes: UAVs must be configured to climb to them. "" for an older check.
  *
  * @param {ShownPlan} plan
  */

@@ -288,7 +288,7 @@ function placeInTheMiddle() {
   return true;
 }
 
-// The selection outlives the page: it is kept a moment after each change, and dropped once there is nothing to keep.
+// The selection survives a reload: it is stored a moment after each change, and deleted once there is none to keep.
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let keepTimer;
 let isKept = true;

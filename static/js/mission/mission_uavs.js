@@ -60,7 +60,7 @@ function freeName({ uavs }, name) {
 }
 
 /**
- * One more UAV of the fleet; in this mission it has another name where its own is taken.
+ * Add a UAV of the fleet; it receives another name in this mission where its own is taken.
  *
  * @param {MissionSelection} selection
  * @param {PickedUav} uav

@@ -52,8 +52,7 @@ export function qualityOf({
 }
 
 /**
- * Against the best plan without the zones that come or go meanwhile: it may be that none is as good that keeps clear of
- * them. share: null: nothing.
+ * The text against the best plan without temporary zones: possibly no plan that avoids them is as good. share: null: no difference.
  *
  * @param {string | null} share
  * @param {boolean} isLocked
@@ -111,7 +110,7 @@ const PROVEN = {
 const provenWords = (objective, isLocked, leavesOut) => PROVEN[objective][(isLocked ? 1 : 0) + (leavesOut ? 2 : 0)];
 
 /**
- * What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked.
+ * The cost of the locked parts of a plan: "Your wish costs 2.3 km more (+4.0 %)." Empty without locks.
  *
  * @param {Pick<Plan, "objective" | "wish">} result
  */

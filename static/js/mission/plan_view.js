@@ -1,4 +1,4 @@
-/** What a plan means for the page: letters, numbers, sentences. Values in, values out. */
+/** Texts and numbers of a plan for the page: letters, numbers, sentences. Values in, values out. */
 
 import { routeLetter } from "../domain/palette.js";
 import { positionAt, profileOf } from "../domain/route_profile.js";
@@ -33,7 +33,7 @@ export const OBJECTIVES = [
 ];
 
 /**
- * The one to set beside another: the soonest end, beside which the fewest metres.
+ * The objective to compare with: for the earliest end the fewest metres, else the earliest end.
  *
  * @param {Plan["objective"]} objective
  * @returns {Plan["objective"]}
@@ -114,7 +114,7 @@ export function longestDuration_s(result) {
   return Math.max(0, ...result.routes.map((route) => route.duration_s + (route.departs_s ?? 0)));
 }
 
-/** "56 min, 79.5 km": what an objective gives, where it has been planned. @param {Plan} result */
+/** "56 min, 79.5 km": the figures of an objective, where it has been planned. @param {Plan} result */
 export function figuresOf(result) {
   return `${durationText(longestDuration_s(result))}, ${lengthText(result.total_length_m)}`;
 }
@@ -265,7 +265,7 @@ export function isPlanCurrent(state) {
 }
 
 /**
- * Whether the plan on the page is that, but for locks and wishes of targets that are younger: they can be shown in it.
+ * Whether the plan on the page belongs to the selection, except for newer locks and wishes: they can be shown in it.
  *
  * @param {Pick<MissionPageState, "plan" | "selection">} state
  */
@@ -288,7 +288,7 @@ export function shownPlaces(state) {
 }
 
 /**
- * Whether leaving the page would lose something.
+ * Whether leaving the page would lose changes.
  *
  * @param {Pick<MissionPageState, "mission" | "selection" | "name" | "plan" | "planIsStored" | "savedBasis">} state
  */

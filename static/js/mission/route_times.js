@@ -70,7 +70,7 @@ export function staysOf({ waypoints, charging }) {
   return stays.sort((a, b) => a.index - b.index);
 }
 
-/** How long it stands on the way with its rotors off. @param {Pick<Route, "waypoints" | "charging">} route */
+/** Time on stops with rotors off [s]. @param {Pick<Route, "waypoints" | "charging">} route */
 export function standing_s(route) {
   const charging_s = (route.charging ?? []).reduce((sum, stop) => sum + stop.charging_s, 0);
   return staysOf(route)
@@ -133,7 +133,7 @@ export function separationOf({ separation, routes }) {
   return { isFault: false, words: [kept, nearestWords(separation.closest)].filter(Boolean).join(" ") };
 }
 
-/** What one UAV does to keep apart; empty: nothing. @param {Pick<Route, "uav" | "departs_s">} route @param {number} layer_m */
+/** What one UAV does for separation; empty: nothing. @param {Pick<Route, "uav" | "departs_s">} route @param {number} layer_m */
 function changeWords({ uav: name, departs_s }, layer_m) {
   const values = { name, time: durationText(departs_s), height: heightText(layer_m) };
   if (departs_s > 0 && layer_m > 0) return t("{name} starts {time} later and flies {height} higher", values);

@@ -60,8 +60,7 @@ export function targetOfRow({ id, kind, centre, ...properties }) {
 }
 
 /**
- * How much of a line or railway is picked. OpenStreetMap cuts railways into sections: one of them is not the whole
- * track.
+ * The extent picked of a line or railway. OpenStreetMap splits railways into sections: one of them is not the whole track.
  *
  * @param {string | null} kind
  * @param {number | null} [length_m]
@@ -169,7 +168,7 @@ export function withTask(selection, keys, { kind, hold_s = null }) {
   };
 }
 
-/** What a target without wishes of its own has. @type {Readonly<Wishes>} */
+/** The wishes of a target by default. @type {Readonly<Wishes>} */
 const NO_WISH = { priority: "normal", uav: null, sensor: "" };
 
 /**
@@ -215,7 +214,7 @@ export function sensorsKnown(selection, fleet) {
 }
 
 /**
- * What a UAV's flying takes: planning/energy/performance.py.
+ * Values of a UAV's performance: planning/energy/performance.py.
  *
  * @type {("battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps" | "rotor_disk_m2" | "hover_power_w")[]}
  */
@@ -237,7 +236,7 @@ const UAV_VALUES = /** @type {const} */ ([
 ]);
 
 /**
- * Locks with indices into the targets, as the API takes them; nothing where none is locked.
+ * Locks with indices into the targets, in the form of the API; empty without locks.
  *
  * @param {MissionSelection} selection
  * @returns {Pick<PlanInputRequest, "locks">}
@@ -253,7 +252,7 @@ function locksAsked({ targets, locks }) {
   };
 }
 
-/** The same with nothing locked. @param {MissionSelection} selection @returns {MissionSelection} */
+/** The selection without locks. @param {MissionSelection} selection @returns {MissionSelection} */
 export const withoutLocks = (selection) => ({ ...selection, locks: [] });
 
 /**
@@ -368,7 +367,7 @@ export function storedTarget(target) {
 }
 
 /**
- * The same targets, each with a key of its own: a program may ask for one place several times.
+ * The targets with unique keys: a program may request one place several times.
  *
  * @param {PickedTarget[]} targets
  */

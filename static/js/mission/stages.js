@@ -1,4 +1,4 @@
-/** The stages of a mission, once one that was begun on this page is stored. */
+/** The stages of a mission, once a mission that was begun on this page is stored. */
 
 import { byId, h } from "../dom.js";
 import { t } from "../text.js";

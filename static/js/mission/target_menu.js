@@ -157,7 +157,7 @@ function lockChoices({ key }, actions, { selection, orders }) {
 }
 
 /**
- * The menu for these targets; `known` is { selection, fleet, orders }, `more` are acts besides: [{ icon, words, act }].
+ * The menu for these targets; `known` is { selection, fleet, orders }, `more` are additional acts: [{ icon, words, act }].
  *
  * @param {PickedTarget[]} targets
  * @param {MissionActions} actions

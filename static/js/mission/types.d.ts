@@ -91,7 +91,7 @@ export interface PickableAsset {
   task?: Task | null;
 }
 
-/** What a mission may say of a UAV; what it leaves out is as in the fleet. null: it has none. */
+/** A mission's own values of a UAV; omitted ones are as in the fleet. null: it has none. */
 export type UavValues = {
   [Name in
     | "max_range_m"
@@ -245,7 +245,7 @@ export interface Planning {
   isQueued?: boolean;
 }
 
-// what the page tells
+// notices of the page
 
 /** A way out of a problem: an act, or an address. */
 export type WayOut = { label: string; act?: () => unknown; href?: () => string };
@@ -260,7 +260,7 @@ export interface Problem {
   about: string | null;
 }
 
-/** How a problem is told. */
+/** A problem as shown. */
 export interface ProblemOptions {
   untilChanged?: boolean;
   level?: Problem["level"];
@@ -308,7 +308,7 @@ export interface HandPoint {
   isManual: boolean;
 }
 
-/** What the server says against waypoints and legs, by index. */
+/** The server's faults of waypoints and legs, by index. */
 export interface HandFaults {
   points: Map<number, string>;
   legs: Map<number, string>;
@@ -327,7 +327,7 @@ export interface HandEdit {
   /** the server's last answer */
   look: HandLook | null;
   isCheckOld: boolean;
-  /** why that could not be asked for */
+  /** why the request failed */
   unknown: string;
   faults: HandFaults;
   /** the changed legs; null while it is not known whether one is clear */
@@ -350,7 +350,7 @@ export interface RunningRehearsal {
 export interface RehearsalState {
   list: Rehearsal[] | null;
   detail: RehearsalDetail | null;
-  /** which run of it is looked at */
+  /** index of the selected run */
   run: number;
   track: RehearsalTrack | null;
   running: RunningRehearsal | null;
@@ -418,7 +418,7 @@ export interface MissionPageState {
   /** checks before start, as the page Fly shows them; null: not read */
   preflight: Preflight | null;
   isDispatching: boolean;
-  arrival: "awaited" | "whole" | "failed"; // of the page's mission and the fleet: before, nothing is said to be empty
+  arrival: "awaited" | "whole" | "failed"; // of the page's mission and the fleet: before, no list counts as empty
   rehearsal: RehearsalState;
 }
 
@@ -432,12 +432,12 @@ export interface MissionContext {
   /** one step of the history; false where it is the same */
   change(next: MissionSelection): boolean;
   problem(title: string, text: string, actions?: WayOut[], how?: ProblemOptions): void;
-  /** tells what an error says; `actions` try it again */
+  /** shows an error; `actions` retry it */
   failed(title: string, error: unknown, actions?: WayOut[], how?: ProblemOptions): void;
   wordsOf(error: unknown): string;
   page: MissionPageData;
   drafts: ReturnType<typeof createDrafts>;
-  /** of what is being waited for */
+  /** progress of the running request */
   running: { stopping: AbortController | null };
   runningJob: ReturnType<typeof createRunningJob>;
 }

@@ -20,7 +20,7 @@ const SPACE = "\u00a0";
 const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 /**
- * Of a stored mission's changes those that the selection has not taken over: its UAVs still have the figures of before.
+ * Changes of a stored mission that the selection has not taken over: its UAVs still have the old figures.
  *
  * @param {MissionSelection} selection
  * @param {UavChange[] | null | undefined} changes

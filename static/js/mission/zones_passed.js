@@ -1,7 +1,4 @@
-/**
- * What the zones beside a route are to it: in its way, at another height, passed by, or not in force when the UAV comes
- * by.
- */
+/** Relation of zones to a route: obstructing it, at another height, passed by, or out of force when the UAV passes. */
 
 import { isInForce } from "../domain/zones_in_force.js";
 import { t } from "../text.js";
@@ -117,7 +114,7 @@ export const zoneWords = ({ name, kind }) =>
   })[kind];
 
 /**
- * What each kind means where it is drawn: [{ kind, words }], of the kinds that there are.
+ * Legend of the drawn zones: [{ kind, words }], of the kinds that occur.
  *
  * @param {Pick<PassedZone, "kind">[]} zones
  */
@@ -135,7 +132,7 @@ export function zoneLegend(zones) {
 }
 
 /**
- * By how much zones count beyond their times and heights; empty where nothing is added.
+ * Margins of zones in time and height; empty without any.
  *
  * @param {Pick<ZoneMargins, "time_s" | "height_m">} [margins]
  */

@@ -65,7 +65,7 @@ export function createActs({ reload, showProblem }) {
   }
 
   /**
-   * Deletes or brings back; shows how many, and why not where something is refused.
+   * Delete or restore missions; shows the count, and the reason of a refusal.
    *
    * @param {Named[]} missions
    * @param {"delete" | "restore"} path

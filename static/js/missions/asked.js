@@ -71,7 +71,7 @@ export function requestOf(asked, now = new Date()) {
   return `/missions?${parameters}`;
 }
 
-/** How many of the fields behind "More filters" are set. @param {Asked} asked */
+/** Count of filled fields behind "More filters". @param {Asked} asked */
 export function countOfFields({ author, uav, changed, stale }) {
   return [author, uav, changed, stale].filter(Boolean).length;
 }

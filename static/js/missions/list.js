@@ -59,7 +59,7 @@ export function createList() {
   }
 
   /**
-   * The page that an address of the API gives; of two at once the later one counts.
+   * Load the page at an address of the API; of two at once the later one counts.
    *
    * @param {string} [address]
    * @param {string[]} [pages] addresses of the pages before it
@@ -74,7 +74,7 @@ export function createList() {
       const { data } = /** @type {Answer<MissionPage>} */ (await get(address, { signal: mine.signal }));
       const before = pages.at(-1);
       if (!data.results.length && before) {
-        await load(before, pages.slice(0, -1)); // the last one of the page is gone
+        await load(before, pages.slice(0, -1)); // the last one of the page was removed
         return;
       }
       store.update({

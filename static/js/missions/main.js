@@ -268,7 +268,7 @@ function drawEmpty(...parts) {
 
 const DELETED = "deleted"; // beside the states of missions
 
-/** All, then each state that occurs, then deleted ones, with how many. @param {ListState} state */
+/** Filters by state: all, then each state that occurs, then deleted ones, with counts. @param {ListState} state */
 function drawStates({ byState, deletedCount, asked }) {
   const total = Object.values(byState).reduce((sum, count) => sum + count, 0);
   const chosen = asked.deleted ? DELETED : asked.state;

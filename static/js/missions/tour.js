@@ -1,4 +1,4 @@
-/** A guided tour of five steps over the list of missions: begun once by itself, then from the account's menu. */
+/** A guided tour of five steps over the list of missions: started once automatically, then from the account's menu. */
 
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
@@ -60,7 +60,7 @@ function remember(userId) {
   try {
     localStorage.setItem(keyOf(userId), new Date().toISOString());
   } catch {
-    // A browser that keeps nothing shows no tour by itself.
+    // A browser without storage does not start the tour automatically.
   }
 }
 

@@ -68,12 +68,12 @@ function createAlarm() {
 
   return {
     choice: () => choice,
-    /** By a click: browsers let nothing sound before one. @param {boolean} isOn */
+    /** Set by a click: browsers allow no sound before one. @param {boolean} isOn */
     setSound(isOn) {
       keep({ sound: isOn });
       if (isOn) play("warning");
     },
-    /** Resolves to whether the browser lets us. @param {boolean} isOn */
+    /** Resolves to whether the browser grants the permission. @param {boolean} isOn */
     async setNotify(isOn) {
       const isAllowed = isOn && "Notification" in globalThis && (await Notification.requestPermission()) === "granted";
       keep({ notify: isAllowed });
@@ -129,7 +129,7 @@ function makeMenu(alarm, onChange) {
   );
 }
 
-/** Announces what comes in, once a cause, after the first snapshot. @param {MonitorStore} store */
+/** Announce new alerts, once a cause, after the first snapshot. @param {MonitorStore} store */
 export function mountAlarm(store) {
   const alarm = createAlarm();
   /** @type {Map<number, AlertLevel>} */

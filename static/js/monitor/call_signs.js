@@ -10,7 +10,7 @@ import { routeLetter } from "../domain/palette.js";
 /** Call numbers of the missions on a page of several, by id. @typedef {Map<string, number>} MissionNumbers */
 
 /**
- * As the service gives them: every page of the organisation shows the same ones, and no two missions on their way share one.
+ * Numbers of missions from the service: every page of the organisation shows the same ones, and no two missions in progress share one.
  *
  * @param {MissionNumbers} known
  * @param {Pick<LiveMission, "id" | "call_number">[]} missions

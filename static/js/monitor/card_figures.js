@@ -119,7 +119,10 @@ function homeFigure({ measured, estimated }, { home }, certainty, mark) {
   });
 }
 
-/** While it holds, how long it can; else its next target and when. @param {LiveUav} uav @param {Beside} beside @param {string} mark */
+/**
+ * While it holds, the remaining time it can; else its next target and when.
+ * @param {LiveUav} uav @param {Beside} beside @param {string} mark
+ */
 function nextFigure(uav, { targetOf }, mark) {
   const { estimated } = uav;
   if (isHeld(uav)) {

@@ -55,7 +55,7 @@ const FAULTS = {
   clock_offset_s: (s) => s !== 0 && s !== null && t("clock off by {seconds} s", { seconds: numberText(s) }),
 };
 
-/** "motor 1 has failed"; where nothing is wrong any more, all is well again. @param {Record<string, unknown>} faults */
+/** "motor 1 has failed"; without faults: all is well again. @param {Record<string, unknown>} faults */
 function faultWords(faults) {
   const wrong = Object.entries(faults).map(([name, value]) => FAULTS[name]?.(value));
   return wrong.filter(Boolean).join(", ") || t("faults cleared");

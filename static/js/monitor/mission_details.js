@@ -25,7 +25,7 @@ export function flownParts(features) {
 }
 
 /**
- * Puts one more report behind a UAV's line; an older one, or the same, changes nothing. Returns whether it was put there.
+ * Append a report to a UAV's line; an older or equal one changes nothing. Returns whether it was appended.
  *
  * @param {Flown} flown
  * @param {number} uav

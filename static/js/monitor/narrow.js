@@ -4,7 +4,7 @@ import { byId, find } from "../dom.js";
 
 const narrow = matchMedia("(max-width: 1099px)");
 
-/** Returns { showBoard() }: from its top, where an offer stands above the alerts. */
+/** Returns { showBoard() }: scrolls to its top, where an offer is above the alerts. */
 export function mountNarrow() {
   const parts = byId("right-parts");
   const tabs = byId("narrow-tabs");

@@ -35,7 +35,7 @@ export function missionOfCopy({ id, name, state, revision, departs_at, colours, 
 }
 
 /**
- * Stands in for the feed of live/feed.js: nothing comes, and the time is that of the copy.
+ * Replacement of the feed of live/feed.js: without messages, and with the time of the copy.
  *
  * @param {string} keptAt ISO 8601
  */
@@ -50,7 +50,7 @@ export function silentFeed(keptAt) {
 }
 
 /**
- * Reads the mission out of the copy, shows it beside the map, and returns what the map draws besides.
+ * Read the mission from the copy, show it beside the map, and return the map's additional features.
  *
  * @param {MonitorStore} store
  * @param {string} id

@@ -1,4 +1,4 @@
-/** UAVs whose mission is over keep the letter and colour that they had in it, as long as they fly no other. Values in, values out. */
+/** Letter and colour of UAVs whose mission is over: kept as long as they fly no other. Values in, values out. */
 
 import { routeNumber } from "../domain/palette.js";
 

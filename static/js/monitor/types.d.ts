@@ -28,7 +28,7 @@ export interface MonitorPage extends MapPage {
   hasSimulated: boolean;
   /** of the only mission: a UAV of it is real, and is flown in simulation by a twin, in a copy of the mission */
   hasReal?: boolean;
-  /** of the only mission; the page's title until the feed tells it */
+  /** of the only mission; the page's title until the feed reports it */
   missionName?: string;
   bounds: Box | null;
   extent: Box | null;
@@ -57,7 +57,7 @@ export interface OfferedRoute {
   geometry: Geometry;
 }
 
-/** What the feed tells, what was read beside it, and what the operator looks at. */
+/** Data of the feed, data read besides, and the operator's selection. */
 export interface MonitorState extends Live {
   /** missions as the REST API shows them, by id */
   details: Map<string, Mission>;
@@ -86,7 +86,7 @@ export interface MonitorState extends Live {
   silent_ms: number;
   /** commands that could not leave this device, by UAV */
   unsent: Map<number, UnsentCommand>;
-  /** commands on their way to the server, and those it has and the feed does not tell yet, by UAV */
+  /** commands on their way to the server or not yet in the feed, by UAV */
   sending: Map<number, SendingCommand>;
   /** false until the first snapshot is shown: what comes later is news */
   isWhole: boolean;
@@ -141,7 +141,7 @@ export interface OfferCause {
   leg?: [string | null, string | null];
 }
 
-/** Words of a live page and whether they tell of something wrong. */
+/** Text of a live page and whether it reports a fault. */
 export interface Told {
   words: string;
   isBad: boolean;
@@ -192,7 +192,7 @@ export interface PlannedLine {
   colour: number;
 }
 
-/** What the operator tells UAVs from the live page. */
+/** Commands of the operator from the live page. */
 export interface Commanding {
   /** opener: the button out of which the question grows */
   ask(id: number, kind: AskedKind, opener?: HTMLElement | null): Promise<void>;

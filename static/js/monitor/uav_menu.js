@@ -1,4 +1,4 @@
-/** Commands to one UAV that are seldom given: its start alone, another upload, the next flight; with the reason where one cannot be given. */
+/** Rare commands to one UAV: its start alone, another upload, the next flight; with the reason where one cannot be sent. */
 
 import { ApiError, freshKey, get, post } from "../api.js";
 import { flightToSend, flyersOf, isFlown, KINDS, whyNoStart, whyNotMoved } from "../domain/flying.js";
@@ -99,7 +99,7 @@ async function tried(act) {
 }
 
 /**
- * Items of the menu of a UAV of a mission, read now; null where it flies nothing of it, or it could not be read.
+ * Items of the menu of a UAV of a mission, read now; null where it has no route in it, or it could not be read.
  *
  * @param {{ mission: string, uav: number, silent: string }} of silent: as for menuEntries
  * @param {{ opener: HTMLElement, ask: (kind: AskedKind) => unknown }} on

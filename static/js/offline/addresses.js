@@ -2,7 +2,7 @@
 
 /** @import { Mission, MissionState } from "../api_types.d.ts" */
 
-const [MIN_ZOOM, MAX_ZOOM] = [7, 15]; // the nearest that the map asks for
+const [MIN_ZOOM, MAX_ZOOM] = [7, 15]; // largest zoom that the map requests
 const MAX_TILES = 240;
 const AROUND_DEG = 0.01; // some 1 km on each side of a route
 
@@ -38,7 +38,7 @@ export function placesOf({ plan, targets, uavs, lost_link }) {
 }
 
 /**
- * Tiles round the places, from far to near, down to the zoom at which they are too many.
+ * Tiles round the places, from small to large zoom, up to the zoom at which they are too many.
  *
  * @param {number[][]} places lon lat
  * @returns {string[]}
@@ -63,7 +63,7 @@ export function tilesOf(places) {
 /** @param {number} longitude @param {number} zoom */
 const columnOf = (longitude, zoom) => Math.floor(((longitude + 180) / 360) * 2 ** zoom);
 
-/** Of the Mercator projection of web maps. @param {number} latitude @param {number} zoom */
+/** Row of a tile in the Mercator projection of web maps. @param {number} latitude @param {number} zoom */
 function rowOf(latitude, zoom) {
   const angle = (latitude * Math.PI) / 180;
   return Math.floor(((1 - Math.asinh(Math.tan(angle)) / Math.PI) / 2) * 2 ** zoom);

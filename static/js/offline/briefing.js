@@ -17,7 +17,7 @@ const SCALE = 1e7; // MAVLink's integers of latitude and longitude
 const [LONGITUDE, LATITUDE, CORNERS] = [6, 7, 2]; // of an item: [command, frame, p1, …, longitude_e7, latitude_e7, …]
 
 /**
- * Rings of the fences that UAVs are given, lon lat, closed; each once.
+ * Rings of the uploaded fences, lon lat, closed; each once.
  *
  * @param {Approval | null} approval
  * @returns {number[][][]}

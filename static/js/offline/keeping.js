@@ -1,4 +1,4 @@
-/** Hands the approved missions to the service worker, which keeps them for when the server cannot be reached. */
+/** Passes the approved missions to the service worker, which stores them for times without a server. */
 
 import { ApiError, get } from "../api.js";
 import { isKept, placesOf, startsOf, tilesOf, wholeOf } from "./addresses.js";
@@ -77,7 +77,7 @@ async function missionsOf({ mission, userId }) {
   return [...new Set([...data.results.map(({ id }) => id), ...(await heldMissions())])];
 }
 
-/** As the page of a mission asks for UAVs, page by page. */
+/** Addresses of UAVs, as the page of a mission requests them, page by page. */
 async function fleetAddresses() {
   const addresses = ["/api/v1/uavs?limit=100"];
   for (;;) {

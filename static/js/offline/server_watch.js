@@ -13,7 +13,7 @@ export function watchServer() {
       if (ELSEWHERE.has(location.pathname)) location.href = "/";
       else location.reload();
     } catch {
-      /* still away */
+      /* still unavailable */
     }
   };
   setInterval(() => void ask(), ASK_INTERVAL_MS);

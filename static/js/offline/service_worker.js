@@ -21,7 +21,7 @@ const [COPY, SHELL] = [COPIES + version, SHELLS + version];
 const OWNER = "/.offline/owner";
 const NO_CONNECTION = "/offline";
 const TILES = "/api/v1/tiles/";
-const KEPT_AT = "X-Offline-Copy"; // of a stored answer: when it was kept; of a request: it is for a page of the copy
+const KEPT_AT = "X-Offline-Copy"; // header of a stored answer: when it was stored; of a request: it is for a page of the copy
 const HASHED = /^\/static\/.+\.[0-9a-f]{12}\.[a-z0-9]+$/;
 const LIBRARY_IMPORT = /(?:from|import)\s*["'](\.[^"']+)["']/g; // of a library of several modules; ours stand in the page
 const STATIC_FILE = /(?:href|src|content)="(\/static\/[^"?#]+\.[a-z0-9]+)"/g;
@@ -264,7 +264,7 @@ function byMission(addresses) {
   return [...missions].map((mission) => [...addresses.filter((address) => missionOf(address) === mission), ...shared]);
 }
 
-/** What the server answers otherwise by now is not kept; without a network nothing is given up. @param {Promise<unknown>} work */
+/** Drop stored documents that the server no longer serves; without a network all are kept. @param {Promise<unknown>} work */
 async function unlessGone(work) {
   try {
     await work;

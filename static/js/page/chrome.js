@@ -135,7 +135,7 @@ document.addEventListener("keydown", (event) => {
   if (event.key === "Escape" && closeMenu()) event.preventDefault();
 });
 
-/** @typedef {{ icon: string, label: string, act: () => unknown, reason?: string | null }} MenuItem `reason`: why it cannot be done now */
+/** @typedef {{ icon: string, label: string, act: () => unknown, reason?: string | null }} MenuItem `reason`: why it is disabled */
 
 /** A menu of buttons. @param {string} label @param {MenuItem[]} items */
 export function menuOf(label, items) {

@@ -17,7 +17,10 @@ const OVER = ["completed", "aborted", "failed"];
 /** @param {Pick<RecordTarget, "state">} target */
 const isOpen = ({ state }) => state === "pending" || state === "in-progress";
 
-/** Whether something of it is left to be closed. @param {{ mission: { state: MissionState }, targets: readonly Pick<RecordTarget, "state">[] }} record */
+/**
+ * Whether a part of it can still be closed.
+ * @param {{ mission: { state: MissionState }, targets: readonly Pick<RecordTarget, "state">[] }} record
+ */
 export const canBeClosed = ({ mission, targets }) =>
   ON_ITS_WAY.includes(mission.state) || (OVER.includes(mission.state) && targets.some(isOpen));
 

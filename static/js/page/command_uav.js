@@ -6,7 +6,7 @@ import { confirmAct } from "./confirm.js";
 
 /** @import { CommandKind } from "../api_types.d.ts" */
 
-const ANSWER_WITHIN_MS = 30_000; // of a connection that is frozen nothing comes
+const ANSWER_WITHIN_MS = 30_000; // timeout for a frozen connection
 
 /**
  * Send a command. Resolves to whether it was sent; false where the user prefers to wait. Rejects with ApiError.

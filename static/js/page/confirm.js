@@ -102,7 +102,7 @@ function createActs({ keep = t("Cancel"), hint = "", isDanger }, close) {
     out,
     first: () => (safer ? better : go),
     safer: () => safer,
-    /** Nothing is left to be done. */
+    /** End: no act is left. */
     end() {
       for (const button of [go, better]) button.remove();
       out.textContent = t("Close");
@@ -119,7 +119,7 @@ function createActs({ keep = t("Cancel"), hint = "", isDanger }, close) {
       safer = shown.safer ?? null;
       go.textContent = shown.act;
       go.className = `button ${isDanger ? "danger filled" : safer ? "" : "primary"}`;
-      go.type = safer ? "button" : "submit"; // Enter takes the first one that submits: not the act where there is a safer one
+      go.type = safer ? "button" : "submit"; // Enter triggers the first submit button: not the act where there is a safer one
       better.remove();
       if (safer) {
         better.textContent = safer.words;
@@ -151,7 +151,7 @@ function fieldInput(field) {
   });
 }
 
-/** Radios of which none is chosen: Enter does nothing before one is. @param {QuestionChoices} choices */
+/** Radio buttons without a default: Enter has no effect before one is chosen. @param {QuestionChoices} choices */
 function choiceGroup({ name, legend, of }) {
   return h(
     "fieldset",
@@ -169,7 +169,7 @@ function choiceGroup({ name, legend, of }) {
 }
 
 /**
- * Above its button where there is room, and never over the window's edge; a phone shows it in the middle.
+ * Place the dialog above its button where there is room, within the window; a phone shows it in the middle.
  *
  * @param {HTMLDialogElement} dialog
  * @param {HTMLElement} opener

@@ -109,7 +109,7 @@ export function textField(name, label, value, { required = false, maxlength = 10
  */
 
 /**
- * factor: how much of the stored unit one of the shown unit is. An empty field is null; what counts then stands in it in grey: `usual`.
+ * factor: size of one shown unit in stored units. An empty field is null; the value in effect, `usual`, is its placeholder.
  *
  * @param {string} name
  * @param {string} label

@@ -119,7 +119,8 @@ export function showKeys(bindings) {
 }
 
 /**
- * Shows a dialog, takes it away when it closes, and gives focus back to where it was, unless something else has it by then: the event comes a frame late.
+ * Show a dialog, remove it when it closes, and return the focus to where it was, unless another element has it by then: the event arrives
+ * a frame late.
  *
  * @param {HTMLDialogElement} dialog
  */

@@ -18,7 +18,7 @@ function keysOf(storage) {
 }
 
 /**
- * How many drafts of the user are not saved on the server: pages drop a draft once it is.
+ * Count of the user's drafts that are not saved on the server: pages delete a draft once it is.
  *
  * @param {number | string} user
  * @param {Storage[]} [storages]
@@ -32,7 +32,7 @@ export function draftsOf(user, storages = [globalThis.localStorage]) {
 }
 
 /**
- * Everything of the user, but the drafts where they are to stay.
+ * Delete all data of the user, except the drafts where they are to be kept.
  *
  * @param {number | string} user
  * @param {{ keepsDrafts?: boolean, storages?: Storage[] }} [options]

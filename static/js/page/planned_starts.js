@@ -19,7 +19,7 @@ import { toast } from "./toast.js";
 const POLL_MS = 2000;
 const TICK_MS = 500;
 const SHOWN_AFTER_MS = 300_000; // as the server lists them
-const DONE_SHOWN_AFTER_MS = 30_000; // where nothing is left to be done about it
+const DONE_SHOWN_AFTER_MS = 30_000; // where no act is possible
 
 /** @type {Record<string, string>} */
 const ENDS = {

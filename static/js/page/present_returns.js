@@ -52,7 +52,7 @@ export async function returnsNow(uavs) {
 export const landingNow = (uav) => askedInTime(`/uavs/${uav}/landing`);
 
 /**
- * What a question before a command has to know of the present.
+ * The present state that a question before a command needs.
  *
  * @param {number} uav
  * @param {AskedKind} kind

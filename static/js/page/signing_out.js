@@ -10,7 +10,7 @@ export const KEEP_NOW = "spanwise-keep-now";
 export const KEEP_NO_MORE = "spanwise-keep-no-more";
 
 /**
- * The form of the menu: sent at once where nothing is unsaved.
+ * The sign-out form of the menu: sent at once where there are no unsaved changes.
  *
  * @param {HTMLFormElement} form
  * @param {number | string} user
@@ -27,7 +27,7 @@ export function askBeforeSigningOut(form, user) {
     ask(drafts, (keepsDrafts) => {
       leave(user, keepsDrafts);
       form.hidden = true;
-      document.body.append(form); // the menu that it was in has closed meanwhile
+      document.body.append(form); // its menu has closed meanwhile
       form.submit();
     });
   });

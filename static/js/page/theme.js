@@ -26,7 +26,7 @@ export function chooseTheme(theme) {
     /* storage is closed: the choice lasts as long as the page */
   }
   if (document.documentElement.dataset.themeOf === "account") {
-    kept = kept.then(() => patch("/account", { theme })).catch(() => {}); // away: the choice lasts as long as the page
+    kept = kept.then(() => patch("/account", { theme })).catch(() => {}); // unavailable: the choice lasts as long as the page
   }
   for (const notify of listeners) notify();
 }

@@ -9,7 +9,7 @@ const HEIGHT_WORDS = { low: t("Panel height: low"), half: t("Panel height: half"
 const phone = matchMedia("(max-width: 720px)");
 
 /**
- * dockOnPhone: the element that takes the dock on a phone, first in the sheet; null on a page without a dock.
+ * dockOnPhone: the element that contains the dock on a phone, first in the sheet; null on a page without a dock.
  *
  * @param {{ dockOnPhone: HTMLElement | null }} options
  */
@@ -29,7 +29,7 @@ export function mountWorkbench({ dockOnPhone }) {
 
   const setHeight = dragSheet(workbench, byId("sheet-handle"));
   return {
-    /** On a phone a sheet that covers the map makes room: something is to be done there. */
+    /** On a phone, lower a sheet that covers the map, for an act on the map. */
     showMap() {
       if (phone.matches && workbench.dataset.sheet === "full") setHeight("half");
     },

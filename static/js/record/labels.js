@@ -32,7 +32,7 @@ export function labelsOf(routes, colours) {
 }
 
 /**
- * "A2", "take-off", "end" or "point 7": a waypoint as an end of a leg.
+ * "A2", "take-off", "end" or "point 7": name of a waypoint as an end of a leg.
  *
  * @param {Pick<RecordRoute, "waypoints">} route
  * @param {number} sequence

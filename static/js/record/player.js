@@ -1,4 +1,4 @@
-/** The clock of a replay: where it stands, how fast it goes, and that it stops at the end. */
+/** The clock of a replay: its position, its speed, and its stop at the end. */
 
 export const SPEEDS = [0.5, 1, 5, 20, 60];
 
@@ -37,7 +37,7 @@ export function createPlayer({
 
   const player = Object.assign(state, {
     /**
-     * The first time at the beginning; later it stays, or goes with the end where it stood there.
+     * Set the span: the first time the position is the beginning; later it stays, or follows the end if it was there.
      *
      * @param {TimeSpan | null} next
      */
@@ -55,7 +55,7 @@ export function createPlayer({
       player.at_ms = clamp(span, at_ms);
       onMove();
     },
-    /** From the beginning where it stands at the end. */
+    /** Start or stop; from the beginning if it is at the end. */
     toggle() {
       if (!span) return;
       player.isPlaying = !player.isPlaying;

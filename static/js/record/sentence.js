@@ -1,4 +1,4 @@
-/** What came of a mission, in a sentence and some figures. Values in, values out. */
+/** The result of a mission in a sentence and some figures. Values in, values out. */
 
 import { t, tn } from "../text.js";
 import { clockText, durationText, energyText, exactHeightText, lengthText, numberText, percentText } from "../units.js";

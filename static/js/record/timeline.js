@@ -1,4 +1,4 @@
-/** The time that a replay goes through: its span, its axis, and what happened in it. Values in, values out. */
+/** The time of a replay: its span, its axis, and its events. Values in, values out. */
 
 import { lastOf } from "./track.js";
 
@@ -40,7 +40,7 @@ const STEPS_MS = [
 ];
 const MAX_MS = STEPS_MS[STEPS_MS.length - 1];
 const TICK_PX = 84;
-const SAME_MS = 500; // an event that the cursor stands on
+const SAME_MS = 500; // an event at the cursor
 
 /**
  * From the first take-off to the last landing; of all reports where none states that it flew. null without reports.
@@ -109,7 +109,7 @@ export const hasLanded = (track, index, isOver) =>
   isOver || index < track.flights.length - 1 || track.samples.at(-1)?.isInAir === false;
 
 /**
- * What happened, in the order of time.
+ * Events in the order of time.
  *
  * @param {object} flown
  * @param {readonly { place: number, uav: number | null, track: Pick<Track, "flights" | "samples"> }[]} flown.routes
@@ -153,7 +153,7 @@ export function eventFrom(events, at_ms, direction) {
 }
 
 /**
- * Heights of the plan by time, begun when the UAV took off, as fast as its clock went; none where the plan has no times.
+ * Heights of the plan by time, from the UAV's take-off, at the rate of its clock; empty where the plan has no times.
  *
  * @param {{ waypoints: readonly Pick<RecordRoute["waypoints"][number], "arrival_s" | "altitude_relative_m">[],
  *   flown: Pick<RecordRoute["flown"], "began_at" | "clock_rate"> }} route

@@ -10,7 +10,7 @@
 /** @typedef {{ at_ms: number, value: number }} TimedValue */
 
 const SILENT_MS = 12_000; // a UAV reports at least every ten seconds
-const SPACINGS = 2.5; // of thinned records: neighbours may lie up to two spacings apart
+const SPACINGS = 2.5; // of thinned records: neighbours may be up to two spacings apart
 
 /**
  * The shortest interval between two records that counts as silence. every_s: spacing that the server chose, null: it returned all
@@ -25,7 +25,7 @@ function speedOf({ velocity_north_mps: north, velocity_east_mps: east }) {
   return typeof north === "number" && typeof east === "number" ? Math.hypot(north, east) : null;
 }
 
-/** Where the wind comes from; the log has where the air goes. @param {Partial<RecordProperties>} properties */
+/** The direction from which the wind comes; the log stores where the air moves to. @param {Partial<RecordProperties>} properties */
 function windOf({ wind_north_mps: north, wind_east_mps: east }) {
   if (typeof north !== "number" || typeof east !== "number") return null;
   return { speed_mps: Math.hypot(north, east), from_deg: ((Math.atan2(-east, -north) * 180) / Math.PI + 360) % 360 };

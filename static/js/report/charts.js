@@ -22,7 +22,7 @@ const points = (line, x, y) =>
  * @param {ToPixels} options.x of a moment
  * @param {number} options.width_px
  * @param {number} options.height_px
- * @param {number} options.unit how much of the value one of the reader's units is
+ * @param {number} options.unit size of one of the reader's units in the stored unit
  * @param {number | null} [options.highest] of the scale, or null for the greatest value
  * @param {(value: number) => string} options.ruleText
  * @param {string} options.label

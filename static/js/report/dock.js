@@ -40,7 +40,7 @@ import { drawStrip } from "./strip.js";
 /** @typedef {{ routes: ReplayRoute[], span: TimeSpan }} Shown */
 /** @typedef {{ x: Scale["x"], width_px: number }} Axis */
 
-const MAX_READINGS = 6; // beside a chart; of more UAVs only the chosen one is read
+const MAX_READINGS = 6; // beside a chart; with more UAVs only the chosen one has a figure
 const MINUTE_MS = 60_000;
 const SHORT_S = 90;
 

@@ -10,7 +10,7 @@ import { t } from "../text.js";
 /** @import { Mission, MissionRecord } from "../api_types.d.ts" */
 
 /** @type {string | null} */
-let key = null; // of the asking: the same until it is answered, so that there is one draft
+let key = null; // of the request: the same until it is answered, so that there is one draft
 
 /**
  * Shown where targets were missed and the reader may plan.

@@ -15,7 +15,7 @@ const BEFORE = "line-labels";
 const NOTHING = { type: "FeatureCollection", features: [] };
 const THIN_PX = 1.6;
 
-/** @param {number[][]} coordinates @param {Partial<Pick<ReplayRoute, "place" | "colour">>} [of] whose they are @returns {Feature} */
+/** @param {number[][]} coordinates @param {Partial<Pick<ReplayRoute, "place" | "colour">>} [of] the UAV's place and colour @returns {Feature} */
 const feature = (coordinates, { place, colour } = {}) => ({
   type: "Feature",
   properties: { place, route: colour },
@@ -111,7 +111,7 @@ export function lightLeg(map, positions) {
 }
 
 /**
- * Brings one UAV forward; null gives all of them back.
+ * Highlight one UAV; null resets all.
  *
  * @param {MapLibreMap} map
  * @param {number | null} place

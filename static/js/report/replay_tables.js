@@ -11,7 +11,7 @@ import { exactClockText, heightText, percentText, speedText } from "../units.js"
 const ROWS = 12;
 
 /**
- * A table of each UAV: its figures at moments that lie evenly in its flights.
+ * A table of each UAV: its figures at evenly spaced moments of its flights.
  *
  * @param {readonly ReplayRoute[]} routes
  */

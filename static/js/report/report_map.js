@@ -36,7 +36,7 @@ const REST = { light: 0.3, dark: 0.42 }; // of routes that are not selected
 const NEAR_ZOOM = 14;
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-/** Of its marker. @param {Pick<ReplayRoute, "uav" | "place">} route */
+/** Id of its marker. @param {Pick<ReplayRoute, "uav" | "place">} route */
 const idOf = ({ uav, place }) => uav ?? `place ${place}`;
 
 /**
@@ -110,7 +110,7 @@ const placesOf = ({ routes }) =>
     [...waypoints, ...track.samples].flatMap(({ position }) => (position ? [position] : [])),
   );
 
-/** A pin where something happened to a UAV. @param {MapLibreMap} map @param {Incident} incident @param {() => void} onPick */
+/** A pin at an incident of a UAV. @param {MapLibreMap} map @param {Incident} incident @param {() => void} onPick */
 function pinOf(map, { kind, message, at, position }, onPick) {
   if (!position) return [];
   const [longitude, latitude] = position;

@@ -1,4 +1,4 @@
-/** The side: what came of the mission in a sentence, in figures, and what became of each target. */
+/** The side panel: the result of the mission in a sentence, in figures, and for each target. */
 
 import { byId, find, h, icon } from "../dom.js";
 import { colourClass } from "../domain/palette.js";
@@ -95,7 +95,7 @@ const figureRow = ({ words, planned, flown, more }) =>
     h("td", { class: "number quiet-text" }, more),
   );
 
-/** A sentence whose targets are shown on the map by a click. @param {ReturnType<typeof reasonsOf>[number]} reason @param {OnLook} onLook */
+/** A sentence; a click shows its targets on the map. @param {ReturnType<typeof reasonsOf>[number]} reason @param {OnLook} onLook */
 function reasonLine({ targets, words }, onLook) {
   const [before, after = ""] = words.split("{targets}");
   const named = targets.slice(0, MAX_NAMED).map(({ place, label }, index) => [

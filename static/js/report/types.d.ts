@@ -39,7 +39,7 @@ export interface ReplayRoute extends RecordRoute {
   alerts: StripAlert[];
 }
 
-/** A leg that is looked at: sequences of its waypoints. */
+/** The selected leg: sequences of its waypoints. */
 export interface LookedLeg {
   place: number;
   from: number;

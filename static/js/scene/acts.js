@@ -86,7 +86,7 @@ function linkTo({ stage: { source, chosen, target }, rig, picture, atNow }) {
   });
 }
 
-/** Brings all that was planned into the picture; returns whether there is something. @param {ActsContext} context */
+/** Fit the whole plan into the picture; returns whether there is one. @param {ActsContext} context */
 function fitAll({ stage, rig, targets, drawn }) {
   const shown = drawn();
   const places = [...targets.map(({ place3d }) => place3d), ...shown.map(({ place }) => place)];

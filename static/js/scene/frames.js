@@ -17,7 +17,7 @@ const READ_EVERY_MS = 250; // instruments while it plays
 const DESCRIBE_EVERY_MS = 2_000;
 const REACH_M = 3_000; // search radius of wires and towers
 const PICK_PX = { uav: 26, target: 18 };
-const TARGET_NAMES_M = 500; // from where on a target has its name besides its label
+const TARGET_NAMES_M = 500; // within this distance a target shows its name besides its label
 const ROUTES = 8;
 const TOGETHER_M = 90;
 const TOGETHER_SHARE = 0.4;
@@ -236,7 +236,7 @@ function focusOf(place, subject) {
 }
 
 /**
- * The one that stands nearest to a place of the screen, within reach.
+ * The item nearest to a place of the screen, within reach.
  *
  * @template Item
  * @param {readonly Item[]} items
@@ -273,7 +273,7 @@ export function createFrames(context) {
     return roomRound(surroundings, pose.eye, others);
   }
 
-  /** Returns whether the next picture is wanted at once. @param {FrameTime} time */
+  /** Draw a frame. Returns whether the next one is needed at once. @param {FrameTime} time */
   function draw({ dt_s, now_ms }) {
     const at_ms = atNow();
     hands.advance(dt_s);

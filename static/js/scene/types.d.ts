@@ -80,7 +80,7 @@ export interface FlightRoute {
   isSimulated?: boolean;
   planned: PlannedPlace[];
   pieces: Piece[];
-  /** of a live source: what the feed says of its UAV */
+  /** of a live source: the feed's data of its UAV */
   uavNow?: LiveUav;
 }
 /** A target with the label it has on all stages. */
@@ -220,7 +220,7 @@ export interface PictureOptions {
 /** What is seen in one frame. */
 export interface Look {
   pose: Pose;
-  /** to what is looked at */
+  /** distance to the target */
   distance_m: number;
   /** round the camera */
   room_m: number;

@@ -1,4 +1,4 @@
-/** Areas that UAVs keep out of by themselves, as they were given them. */
+/** Fences that UAVs keep to by themselves, as uploaded to them. */
 
 import { addSources, readToken, setFeatures, setPaint } from "../look/style.js";
 

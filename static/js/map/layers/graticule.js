@@ -7,7 +7,7 @@ import { sourceOf } from "../look/style.js";
 const STEPS_DEG = [30, 15, 10, 5, 2, 1, 0.5, 0.25, 0.1, 0.05, 0.025, 0.01, 0.005, 0.0025, 0.001];
 const WANTED_PX = 150;
 
-/** The step whose lines stand nearest to 150 px apart. @param {number} zoom */
+/** The step whose lines are nearest to 150 px apart. @param {number} zoom */
 export function graticuleStep(zoom) {
   const degrees_per_px = 360 / (512 * 2 ** zoom);
   return STEPS_DEG.reduce((best, step) =>

@@ -127,7 +127,7 @@ export function show(map, points, { chosen, stateOf, isFree } = NO_LOOK) {
 }
 
 /**
- * Places at which a new point can be drawn out of a leg: [{ index, position }], of legs that are long enough on the screen.
+ * Handles for new points in the middle of legs: [{ index, position }], of legs that are long enough on the screen.
  *
  * @param {MapLibreMap} map
  * @param {readonly { position: number[] }[]} points

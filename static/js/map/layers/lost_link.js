@@ -68,7 +68,7 @@ const feature = (type, coordinates, { fails = false, lit = false }) => ({
 });
 
 /**
- * returns: [{ from, to, fails, lit }]; none takes them away.
+ * returns: [{ from, to, fails, lit }]; an empty list removes them.
  *
  * @param {MapLibreMap} map
  * @param {{ from: number[], to: number[], fails?: boolean, lit?: boolean }[]} returns

@@ -32,7 +32,7 @@ function layersOf(palette) {
 }
 
 /**
- * routes: of a track, null takes them away.
+ * routes: of a track, null removes them.
  *
  * @param {MapLibreMap} map
  * @param {Palette} palette

@@ -76,7 +76,7 @@ export function showSoFar(map, lines) {
 }
 
 /**
- * Brings one route forward; null gives all of them back.
+ * Highlight one route; null resets all.
  *
  * @param {MapLibreMap} map
  * @param {Palette} palette
@@ -88,7 +88,7 @@ export function lookAt(map, palette, sequence) {
 }
 
 /**
- * The distance that the pointer shows in a strip, as a dot on the map; null takes it away.
+ * The distance at the pointer in a strip, as a dot on the map; null removes it.
  *
  * @param {MapLibreMap} map
  * @param {number[] | null} position

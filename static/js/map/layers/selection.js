@@ -17,7 +17,7 @@ export function update(map, geometries) {
 }
 
 /**
- * Rings a zone of the tiles, whose pieces end at the edges of tiles; null takes the ring away.
+ * Ring of a zone of the tiles, whose pieces end at the edges of tiles; null removes it.
  *
  * @param {MapLibreMap} map
  * @param {number | null} id

@@ -45,7 +45,7 @@ class Targets {
   /** @type {number | null} */
   #lookedAt = null;
   #chosen = "";
-  /** The element under the pointer: it may be taken away without the pointer leaving it. @type {HTMLElement | null} */
+  /** The element under the pointer: it may be removed without a leave event. @type {HTMLElement | null} */
   #hovered = null;
 
   /** @param {MapLibreMap} map @param {TargetHandlers} on */

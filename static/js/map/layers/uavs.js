@@ -1,6 +1,6 @@
 /**
- * Where UAVs stand: a square with the letter for those of the mission, a dart with the name for the others. Squares can be dragged.
- * Darts that would cover each other are one mark with their number; a click spreads them out until the map is zoomed.
+ * Markers of UAVs: a square with the letter for those of the mission, a dart with the name for the others. Squares can be dragged. Darts
+ * that would overlap are one mark with their number; a click spreads them until the map is zoomed.
  */
 
 import { h, svg } from "../../dom.js";
@@ -15,7 +15,7 @@ import { mergeDarts } from "../pills.js";
 /** @typedef {{ heading_deg?: number | null }} Heading */
 
 const SQUARE_PX = 22;
-const DART_MIDDLE_PX = 14; // from a dart's left edge; its name stands to the right
+const DART_MIDDLE_PX = 14; // from a dart's left edge; its name is to the right
 
 /** @param {Heading} uav */
 const headingWords = ({ heading_deg }) =>
@@ -64,7 +64,7 @@ class Uavs {
   #darts = [];
   /** UAVs that are not of the mission. @type {MapUav[]} */
   #others = [];
-  /** How many squares stand at a place. @type {Map<string, number>} */
+  /** Count of squares at a place. @type {Map<string, number>} */
   #standing = new Map();
   #spread = ""; // the group that is spread out, by its UAVs
 

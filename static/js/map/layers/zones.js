@@ -8,7 +8,7 @@ const SOURCE_LAYER = "zones";
 /** @type {WeakMap<MapLibreMap, number[]>} */
 const litOn = new WeakMap(); // map → ids
 
-/** ids: of zones; none takes the rings away. @param {MapLibreMap} map @param {number[]} ids */
+/** ids: of zones; an empty list removes the rings. @param {MapLibreMap} map @param {number[]} ids */
 export function light(map, ids) {
   for (const id of litOn.get(map) ?? [])
     map.setFeatureState({ source: TILES, sourceLayer: SOURCE_LAYER, id }, { lit: false });

@@ -7,7 +7,7 @@ import { bandsOf, TILES, voltage } from "./voltages.js";
 /** @import { Palette } from "../../domain/palette.js" */
 
 /** @param {number} yes @param {number} no */
-const whereResting = (yes, no) => ["case", ["boolean", ["feature-state", "resting"], false], yes, no]; // a zone that its schedule does not put in force now
+const whereResting = (yes, no) => ["case", ["boolean", ["feature-state", "resting"], false], yes, no]; // a zone that is out of force now by its schedule
 const isTimed = ["has", "schedule"];
 const WIDTHS_PX = [1.2, 0.8, 1.1, 1.6, 2.2, 3]; // at zoom 12: not stated, under 50, 50, 100, 200, 380 kV and over
 /** @param {number} factor @param {number} [more] */
@@ -26,7 +26,7 @@ const lineWidth = (more = 0) => [
   17,
   widthsTimes(1.7, more),
 ];
-const NEAR_ZOOM = 13; // zone names stand from here on, however small the zone
+const NEAR_ZOOM = 13; // zone names are shown from here on, for zones of any size
 const isPole = ["==", ["get", "subtype"], "pole"];
 
 /**

@@ -1,4 +1,4 @@
-/** Hatch and arrows, drawn on a canvas in the palette's colours when the style first asks for them. */
+/** Hatch and arrows, drawn on a canvas in the palette's colours when the style first requests them. */
 
 /** @import { Palette } from "../../domain/palette.js" */
 /** @import { MapLibreMap } from "../types.d.ts" */
@@ -109,7 +109,7 @@ function draw(id, palette) {
 }
 
 /**
- * `palette()` gives the one in use. Returns a function that draws all again after a theme change.
+ * `palette()` returns the present one. Returns a function that redraws all after a theme change.
  *
  * @param {MapLibreMap} map
  * @param {() => Palette} palette

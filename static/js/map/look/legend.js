@@ -170,7 +170,7 @@ const ROWS = [
   },
 ];
 
-/** UAVs stand on the map as HTML, not in a layer. */
+/** UAVs are HTML on the map, not a layer. */
 const UAV_ROW = {
   words: t("UAV"),
   draw: () => {
@@ -201,7 +201,7 @@ function isWithin(element, frame) {
 const keyOf = (layer, kind = "") => `${layer}/${kind}`;
 
 /**
- * Which of a layer's rows shows a feature: its voltage, or whether a zone applies at times and rests now.
+ * Which of a layer's rows shows a feature: by its voltage, or whether a zone has times and is out of force now.
  *
  * @param {MapGeoJSONFeature} feature
  * @returns {string}

@@ -158,7 +158,7 @@ function watchRestingZones(map, onChange) {
   });
 }
 
-/** Zones with a schedule that the map has loaded, and whether each rests now. @param {MapLibreMap} map */
+/** Zones with a schedule that the map has loaded, and whether each is out of force now. @param {MapLibreMap} map */
 function loadedZones(map) {
   /** @type {Map<number, boolean>} */
   const seen = new Map();

@@ -73,7 +73,7 @@ export function mapStyle(palette, options) {
 }
 
 /**
- * Gives each layer of a living map the colours of another palette.
+ * Set the colours of another palette on each layer of a map.
  *
  * @param {MapLibreMap} map
  * @param {Palette} palette
@@ -98,7 +98,7 @@ export function sourceOf(map, name) {
   return map.getSource(name);
 }
 
-/** Puts GeoJSON features into a source of this name. @param {MapLibreMap} map @param {string} name @param {object[]} features */
+/** Store GeoJSON features in a source of this name. @param {MapLibreMap} map @param {string} name @param {object[]} features */
 export function setFeatures(map, name, features) {
   sourceOf(map, name)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
 }

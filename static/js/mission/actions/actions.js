@@ -64,7 +64,7 @@ function createContext(store, history, page, drafts) {
   const change = (next) => history.changeTo(settled(next));
 
   /**
-   * Stays until the next try; with `untilChanged` until something else is picked, whatever is saved meanwhile.
+   * Show a problem until the next try; with `untilChanged` until the selection changes, across saves.
    *
    * @param {string} title
    * @param {string} text
@@ -104,7 +104,7 @@ function createContext(store, history, page, drafts) {
   }
 
   /**
-   * `actions` try it again: what the server refuses as it stands has other ways out.
+   * `actions` retry it: a refusal offers other actions.
    *
    * @param {string} title
    * @param {unknown} error

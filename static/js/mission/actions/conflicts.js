@@ -22,7 +22,7 @@ import { createStoredMission } from "./stored_mission.js";
 /** @typedef {(conflict: Conflict, mine: Version, ways: WaysOut) => void} ShowBoth the dialog with both versions */
 
 /**
- * Whose save it was: the newest entry of the history, where that can be read.
+ * The author of a save: from the newest entry of the history, where that can be read.
  *
  * @param {Mission} mission
  * @param {string} userName
@@ -64,8 +64,8 @@ function createMeeting(context, saving) {
   const { storedOf, shownAs, keepOpen } = createStoredMission(context);
 
   /**
-   * A younger revision than the one on the page. `lost` is what this page had sent when no answer came: then it is this
-   * page's own.
+   * Take over a newer revision than the one on the page. `lost` is a version that this page sent without receiving an answer: it may be
+   * this page's own.
    *
    * @param {Mission} theirs
    * @param {Version | null} [lost]
@@ -199,7 +199,7 @@ function createDecision(context, saving, showBoth) {
 }
 
 /**
- * The mission is gone: it can be brought back, or kept as a copy.
+ * The mission was deleted: it can be restored, or kept as a copy.
  *
  * @param {MissionContext} context
  * @param {Saving} saving

@@ -35,7 +35,7 @@ export function createDrafts({ user, editor, storage = () => globalThis.localSto
     try {
       storage().removeItem(keyOf(user, mission));
     } catch {
-      /* nothing was kept */
+      /* not stored */
     }
   }
 
@@ -47,7 +47,7 @@ export function createDrafts({ user, editor, storage = () => globalThis.localSto
       if (read(mission)?.editor === editor) drop(mission);
     },
     /**
-     * draft: { name, selection, revision }. False where storage is full or closed: leaving the page asks first.
+     * draft: { name, selection, revision }. False where storage is full or unavailable: leaving the page then asks first.
      *
      * @param {string | null} mission
      * @param {Omit<Draft, "editor" | "kept_at">} draft
@@ -67,7 +67,7 @@ export function createDrafts({ user, editor, storage = () => globalThis.localSto
 }
 
 /**
- * Whether a new mission holds something that a reload should bring back, be it only a chosen UAV or an option.
+ * Whether a new mission has content that a reload should restore, even a single chosen UAV or option.
  *
  * @param {Version} version
  */
@@ -91,7 +91,7 @@ export function draftDecision(draft, mission, storedBasis) {
 }
 
 /**
- * "vera's", "your own" or "another operator's": whose save came in between.
+ * "vera's", "your own" or "another operator's": the author of the other save.
  *
  * @param {string | null | undefined} actor
  * @param {string} userName

@@ -1,4 +1,4 @@
-/** UAVs of a mission: chosen from the fleet, added to it, moved, given other values for this mission. */
+/** UAVs of a mission: chosen from the fleet, added, moved, with other values for this mission. */
 
 import { post } from "../../api.js";
 import { announce, toast } from "../../page/toast.js";

@@ -53,7 +53,7 @@ const isSamePerformance = (a, b) =>
 const isSameUav = (a, b) => uavFacts(a) === uavFacts(b) && isSamePerformance(a, b);
 
 /**
- * Items of three lists by their keys: theirs, with what I added, changed and took away.
+ * Items of three lists by their keys: theirs, with my additions, changes and removals.
  *
  * @template Item
  * @param {Item[]} base
@@ -68,7 +68,7 @@ function mergedList(base, mine, theirs, keyOf, isSame) {
   const list = [];
   for (const [key, their] of th) {
     const [own, old] = [m.get(key), b.get(key)];
-    if (!own && old && isSame(their, old)) continue; // I took it away
+    if (!own && old && isSame(their, old)) continue; // removed by me
     if (!own) {
       isClash ||= Boolean(old); // removed here and changed by the other user: it stays
       list.push(their);
@@ -81,7 +81,7 @@ function mergedList(base, mine, theirs, keyOf, isSame) {
   for (const [key, own] of m) {
     if (th.has(key)) continue;
     const old = b.get(key);
-    if (old && isSame(own, old)) continue; // they took it away
+    if (old && isSame(own, old)) continue; // removed by them
     isClash ||= Boolean(old);
     list.push(own);
   }
@@ -105,8 +105,8 @@ const areSameLocks = (a, b) => locksOf(a).map(keyOfLock).join() === locksOf(b).m
 const isTiedElsewhere = (target, uav) => ![null, uav].includes(wishesOf(target).uav);
 
 /**
- * Locks and the merged targets: theirs, with what I locked and unlocked; where no plan can keep both a lock or tie of
- * theirs and one of mine, mine stands.
+ * Merged locks for the merged targets: theirs, with my locks and unlocks; where no plan can keep both a lock or tie of theirs and one of
+ * mine, mine is kept.
  *
  * @param {MissionSelection} base
  * @param {MissionSelection} mine
@@ -135,7 +135,7 @@ function mergedLocks(base, mine, theirs, targets) {
 }
 
 /**
- * base, mine and theirs are { name, selection }. What both changed differently is a clash, and there mine stands.
+ * base, mine and theirs are { name, selection }. A part that both changed differently is a clash, and mine is kept.
  *
  * @param {Version} base
  * @param {Version} mine
@@ -201,7 +201,7 @@ export const targetDifferences = (before, after) =>
 export const uavDifferences = (before, after) => differences(before.uavs, after.uavs, keyOfUav, isSameUav);
 
 /**
- * Whether two ask for the same; what one of them leaves to the server counts as the same.
+ * Whether two requests are equal; a value that one leaves to the server counts as equal.
  *
  * @param {Version} a
  * @param {Version} b

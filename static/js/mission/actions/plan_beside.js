@@ -1,7 +1,4 @@
-/**
- * The same selection planned by another objective behind the page: its figures stand in the choice, and one click shows
- * it.
- */
+/** The selection planned by another objective in the background: its figures are shown in the choice, and one click shows the plan. */
 
 import { follow, get, isAbort, post } from "../../api.js";
 import { announce } from "../../page/toast.js";
@@ -85,7 +82,7 @@ function createSideSearch(store) {
 export function createPlanBeside(store) {
   const search = createSideSearch(store);
   /** @type {MissionSelection | null} */
-  let wanted = null; // the selection of a large plan, until its other one is begun
+  let wanted = null; // the selection of a large plan, until its second plan begins
 
   function stop() {
     wanted = null;

@@ -16,7 +16,7 @@ import { planOf, withResult } from "./plan_results.js";
 /** @import { BestSoFar, MissionContext, MissionSelection, PickedTarget, Planning, PlanResult, ShownPlan } from "../types.d.ts" */
 
 /** @typedef {ReturnType<typeof createPlanBeside>} PlanBeside */
-/** @typedef {(signal: AbortSignal) => Promise<PlanResult | { job: string }>} Begin gives the plan, or the job that makes it */
+/** @typedef {(signal: AbortSignal) => Promise<PlanResult | { job: string }>} Begin returns the plan, or the job that makes it */
 
 /** @param {MissionContext} context */
 export function createPlanning(context) {
@@ -158,7 +158,7 @@ function createSearch(context, aside, waitForJob) {
       try {
         await get(`/jobs/${kept.job}`, { signal });
       } catch (error) {
-        if (error instanceof ApiError && error.status === 404) throw new DOMException("gone", "AbortError"); // cleared away since
+        if (error instanceof ApiError && error.status === 404) throw new DOMException("gone", "AbortError"); // removed since
         throw error;
       }
       return { job: kept.job };
@@ -246,7 +246,7 @@ function createStopping({ store, failed, running }) {
       cancelJob(store.state.planning?.job);
       running.stopping?.abort();
     },
-    /** Ends the search, and keeps the best plan so far. */
+    /** Stop the search, and keep the best plan so far. */
     async stop() {
       const job = store.state.planning?.job;
       if (!job) {

@@ -34,7 +34,7 @@ function firstFault(details, place = []) {
 /**
  * asked: the refused selection. Returns { words, ways }, null where the answer names no fault.
  *
- * A way is { label, href } or { label, changed }: the selection to go on with, from the one of that moment.
+ * A way is { label, href } or { label, changed }: `changed` makes the corrected selection from the present one.
  *
  * @param {Pick<ApiError, "details">} error
  * @param {MissionSelection} asked

@@ -12,7 +12,7 @@ const keyOf = (user, mission) => `spanwise.planning.${user}.${mission ?? "new"}`
 
 /** @param {{ user: number, storage?: () => Storage }} options */
 export function createRunningJob({ user, storage = () => globalThis.sessionStorage }) {
-  let isLeaving = false; // what fails because the page goes is no end of the job
+  let isLeaving = false; // a failure because the page closes does not end the job
   globalThis.addEventListener?.("pagehide", () => {
     isLeaving = true;
   });
@@ -53,7 +53,7 @@ export function createRunningJob({ user, storage = () => globalThis.sessionStora
       try {
         storage().removeItem(keyOf(user, mission));
       } catch {
-        /* nothing was kept */
+        /* not stored */
       }
     },
   };

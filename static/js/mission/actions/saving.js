@@ -41,7 +41,7 @@ export function createSaving(context, { waitForJob, makeRoom }, conflicts) {
   const { store, page, running } = context;
   const send = createSender(context, waitForJob);
   /** @type {Attempt | null} */
-  let unsure = null; // a save whose answer never came
+  let unsure = null; // a save without an answer
   /** @type {SaveOptions | null} */
   let wanted = null; // a save that the user requested while another was running
   /** @type {string | null} */
@@ -157,7 +157,7 @@ function createSender(context, waitForJob) {
 
   return async ({ asked, body, key, isNew }) => {
     const { mission } = store.state;
-    const draftOf = mission?.id ?? null; // the copy takes the changes along
+    const draftOf = mission?.id ?? null; // the copy includes the changes
     const answer = /** @type {Answer<Mission | (JobLink & { mission: string })>} */ (
       isNew || !mission
         ? await post("/missions", body, { headers: { "Idempotency-Key": key } })
@@ -169,7 +169,7 @@ function createSender(context, waitForJob) {
       if (isNew) addressNow(answer.data.mission);
       saved = await planned(answer.data, asked);
     } else saved = answer.data;
-    if (isNew && store.state.name === asked.name) store.update({ name: saved.name }); // a mission without a name is given one
+    if (isNew && store.state.name === asked.name) store.update({ name: saved.name }); // a mission without a name receives one
     keepOpen(saved, asked);
     if (isNew) addressNow(saved.id);
     settleDraft(context);

@@ -10,7 +10,7 @@ import { ApiError, get, post } from "../../api.js";
  * @typedef {object} Watching
  * @property {string} editor the name of this page
  * @property {() => Promise<FleetUav[]>} readFleet reads the present fleet
- * @property {(theirs: Mission) => Promise<void>} take a younger revision: see conflicts.js
+ * @property {(theirs: Mission) => Promise<void>} take takes over a newer revision: see conflicts.js
  * @property {(hasWaited?: boolean) => void} connectedAgain
  * @property {() => void} showDeleted
  */
@@ -55,7 +55,7 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, s
     isAsking = true;
     try {
       if (planning) {
-        await report(); // what others save meanwhile comes in once the plan is there
+        await report(); // other users' saves are taken over once the plan has arrived
         return;
       }
       const { data } = /** @type {Answer<Mission | null>} */ (
@@ -64,7 +64,7 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, s
       confirmedDeletion = null;
       const { mission: now, saving: isSaving, isAway: wasAway } = store.state;
       if (data && now && !isSaving && now.id === mission.id && data.revision > now.revision) await take(data);
-      if (wasAway) connectedAgain(wasAway); // after theirs came in: what waits is saved on top of it
+      if (wasAway) connectedAgain(wasAway); // after their version was taken over: pending changes are saved on top of it
       if (Date.now() - reportedAt > PRESENCE_MS) await report();
     } catch (error) {
       failed(error, store.state.mission ?? mission);

@@ -12,7 +12,7 @@ import { t } from "../../text.js";
 const POLL_MS = 2000;
 const CONNECTIONS_EVERY_MS = 20_000;
 const PREFLIGHT_EVERY_MS = 6000;
-const RETURNS_EVERY_MS = 60_000; // they take the server longer, and seldom change
+const RETURNS_EVERY_MS = 60_000; // slower for the server, and seldom changed
 
 /** @param {MissionStore} store @param {Pick<MissionPageData, "isFrozen">} page */
 export function createFlightReading(store, page) {
@@ -83,7 +83,7 @@ export function createFlightReading(store, page) {
     }
   }
 
-  /** Often while something is under way, else now and then. */
+  /** Poll, more often while an act is in progress. */
   function poll() {
     const { mission, commands } = store.state;
     if (document.hidden || !mission) return;

@@ -1,4 +1,4 @@
-/** What an operator does with a mission once it is planned: approve and revoke. Each asks first; it is flown on the page Fly. */
+/** Acts of an operator on a planned mission: approve and revoke. Each asks for confirmation; the mission is flown on the page Fly. */
 
 import { ApiError, freshKey, post, signInAddress } from "../../api.js";
 import { flyersOf, isFrozen, isOnItsWay } from "../../domain/flying.js";

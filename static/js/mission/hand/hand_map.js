@@ -1,4 +1,4 @@
-/** Waypoints on the map under the pointer or a finger: dragged, drawn out of the middle of a leg, chosen by a click. */
+/** Waypoints on the map under the pointer or a finger: dragged, inserted from the middle of a leg, chosen by a click. */
 
 import { swallowDrawnClick } from "../../map/drawn_click.js";
 import * as layer from "../../map/layers/hand_route.js";

@@ -15,7 +15,7 @@ export const isFree = ({ kind }) => kind === "pass";
 /** @param {number[]} position */
 const rounded = (position) => position.map((degrees) => Number(degrees.toFixed(DIGITS)));
 
-/** Whether a leg leads to it that has a speed. @param {Pick<HandPoint, "kind">} point */
+/** Whether a leg with a speed leads to the point. @param {Pick<HandPoint, "kind">} point */
 export const isFlownTo = ({ kind }) => kind !== "start" && kind !== "base";
 
 /** @param {Pick<Route, "waypoints" | "by_hand" | "speeds_by_hand">} route @returns {HandPoint[]} */
@@ -111,7 +111,7 @@ function isAtPlace(point, original) {
 const isAsFast = (point, original) => point.speed_mps === original[point.was].speed_mps;
 
 /**
- * Indices of the legs that are not flown so in the route as stored: leg i goes from point i to the next.
+ * Indices of the legs that differ from the stored route: leg i goes from point i to the next.
  *
  * @param {HandPoint[]} points
  * @param {HandPoint[]} original
@@ -126,7 +126,7 @@ export function changedLegs(points, original) {
 }
 
 /**
- * How many waypoints are another than stored: moved, higher, reached faster or slower, put in, taken out.
+ * Count of waypoints that differ from the stored ones: moved, higher, reached faster or slower, inserted, removed.
  *
  * @param {HandPoint[]} points
  * @param {HandPoint[]} original
@@ -140,7 +140,7 @@ export function changesOf(points, original) {
   );
 }
 
-/** What the server takes for the whole route. @param {HandPoint[]} points */
+/** The whole route in the form of the API. @param {HandPoint[]} points */
 export const bodyOf = (points) => ({
   waypoints: points.map(({ position, altitude_agl_m, was, speed_mps }) => ({
     position,
@@ -170,7 +170,7 @@ export function faultsOf(details) {
 }
 
 /**
- * Whether a leg is as it should be, by the faults of it and of the points at its ends.
+ * Whether a leg is without faults, its own and those of the points at its ends.
  *
  * @param {HandFaults} faults
  * @param {number} index

@@ -161,7 +161,7 @@ export function createManualEditing(context, saving) {
       void ask();
     },
     /**
-     * points: where it was let go; null: nothing is changed.
+     * points: after the drop; null: unchanged.
      *
      * @param {HandPoint[] | null} points
      * @param {number | null} [chosen]

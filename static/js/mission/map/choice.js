@@ -20,7 +20,7 @@ export function createChoice(frame, opened) {
     box = null;
     if (was?.contains(document.activeElement)) {
       const map = /** @type {HTMLElement | null | undefined} */ (opener?.closest("#map"));
-      if (map) map.dataset.pointed = "true"; // it came by a click: no focus ring round the map
+      if (map) map.dataset.pointed = "true"; // opened by a click: no focus ring round the map
       opener?.focus();
     }
     was?.remove();

@@ -312,7 +312,7 @@ function watchPlans({ map, opensAtPlace }, store, fitting) {
   const drawGround = (revision) => {
     if (revision === null || revision === undefined || revision <= (drawnGround ?? -1)) return;
     const tiles = /** @type {VectorTileSource | undefined} */ (map.getSource(TILES));
-    if (drawnGround !== null) tiles?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${revision}`]); // a zone may have come in
+    if (drawnGround !== null) tiles?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${revision}`]); // a zone may have been added
     drawnGround = revision;
   };
   store.listen(["groundRevision", "plan"], ({ groundRevision, plan }) => {

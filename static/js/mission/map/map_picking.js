@@ -1,4 +1,4 @@
-/** What a click on an asset picks, by the tool in hand; where it may mean several things, a small choice beside it. */
+/** Effect of a click on an asset, by the active tool; where there are several, a small choice is shown beside it. */
 
 import { nearestOnLine } from "../../domain/geodesy.js";
 import { announce, toast } from "../../page/toast.js";

@@ -55,7 +55,7 @@ export function createPickedShapes(map, store) {
   }
 
   /**
-   * The ring stands round what a list row or pill is at, else round what the pointer is at.
+   * Ring the feature of the active list row or pill, else the one at the pointer.
    *
    * @param {Readonly<MissionPageState>} state
    */
@@ -70,7 +70,7 @@ export function createPickedShapes(map, store) {
 
   return {
     shapeOf,
-    /** The ring goes to what the pointer is at; null: nothing. @param {MapThing | null} thing */
+    /** Ring the thing at the pointer; null: none. @param {MapThing | null} thing */
     point(thing) {
       if (thing !== null && thing.id === pointed?.id && thing.kind === pointed.kind) return;
       if (thing === null && pointed === null) return;

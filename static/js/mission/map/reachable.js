@@ -11,7 +11,7 @@ import { requestOf } from "../selection.js";
 export const VERDICTS = ["yes", "partly", "no"];
 
 /**
- * What decides over it: UAVs, where they end, departure, air. Nothing where no UAV is chosen.
+ * Inputs of the check: UAVs, their ends, departure, conditions. Null without a chosen UAV.
  *
  * @param {MissionSelection} selection
  */

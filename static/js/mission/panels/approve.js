@@ -9,7 +9,7 @@ import { isPlanCurrent, isUnsaved } from "../plan_view.js";
 
 /** @typedef {ReturnType<typeof createFlying>} Flying */
 
-/** Why a plan cannot be approved as it stands on the page; empty where it can. @param {MissionPageState} state */
+/** Why the plan on the page cannot be approved; empty where it can. @param {MissionPageState} state */
 export function whyNotApproved(state) {
   if (!isPlanCurrent(state)) return t("It has changed since it was planned. Plan again first.");
   if (!state.plan?.result.routes.some((route) => route.geometry))

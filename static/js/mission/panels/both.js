@@ -36,7 +36,7 @@ function listed(items, nameOf) {
 }
 
 /**
- * What a list became since `before`: how many, then what came and went.
+ * The change of a list since `before`: its count, then additions and removals.
  *
  * @template Item
  * @param {MissionSelection} selection

@@ -152,7 +152,7 @@ class Finder {
   /** @type {AbortController | null} */
   #asking = null;
   #isBehind = false; // the list does not yet match the typed text
-  #takesFirst = false; // Enter came before the list
+  #takesFirst = false; // Enter was pressed before the list arrived
 
   /** @param {FinderHow} how */
   constructor(how) {
@@ -175,7 +175,7 @@ class Finder {
     this.close();
   }
 
-  /** Something else is typed. */
+  /** Search after a change of the text. */
   searchSoon() {
     clearTimeout(this.#timer);
     this.#isBehind = true;

@@ -28,7 +28,7 @@ import { exactClockText, exactText } from "../../units.js";
 /** @typedef {{ store: MissionStore, canFly: boolean, saveCopy: () => unknown }} FlyingContext */
 
 /**
- * flying: see flying_actions.js; saveCopy(): saves the mission as another one.
+ * flying: see flying_actions.js; saveCopy(): saves the mission as a copy.
  *
  * @param {MissionStore} store
  * @param {Flying} flying

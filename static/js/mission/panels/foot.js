@@ -1,4 +1,4 @@
-/** The one primary button, saving, and how far a long plan has come. */
+/** The one primary button, saving, and the progress of a long plan. */
 
 import { byId, find } from "../../dom.js";
 import { t } from "../../text.js";
@@ -8,7 +8,7 @@ import { isUnsaved } from "../plan_view.js";
 
 /** @import { MissionActions, MissionPageState, MissionStore, Planning } from "../types.d.ts" */
 
-/** "51.2 km so far · 40 %"; of a job that no planner has taken yet: "waiting". @param {Planning} planning */
+/** "51.2 km so far · 40 %"; "waiting" for a job that no planner has taken yet. @param {Planning} planning */
 export function howFarWords(planning) {
   if (planning.isQueued) return t("waiting");
   const { best, job, found, what, share } = planning;
@@ -59,7 +59,7 @@ function drawSave(state) {
   save.title = nothing ? (state.mission ? t("Everything is saved") : t("Nothing to save yet")) : t("Save (Ctrl+S)");
 }
 
-/** How far a long plan has come. @param {MissionPageState} state */
+/** Show the progress of a long plan. @param {MissionPageState} state */
 function drawJob({ planning }) {
   byId("job").hidden = planning === null;
   if (!planning) return;

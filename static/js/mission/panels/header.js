@@ -101,7 +101,7 @@ export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
     setChildren(byId("notices"), noticesOf(state, context)),
   );
   store.listen(["problem", "conflict"], (state) => {
-    if (state.problem || state.conflict) byId("notices").parentElement?.scrollTo({ top: 0 }); // it stands above a long list
+    if (state.problem || state.conflict) byId("notices").parentElement?.scrollTo({ top: 0 }); // shown above a long list
   });
 }
 
@@ -146,7 +146,7 @@ function drawHead(state, canPlan) {
   chip.textContent = STATE_WORDS[name];
   const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
   markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
-  chip.hidden = !canPlan && !mission; // just the map: there is nothing that could be a draft
+  chip.hidden = !canPlan && !mission; // only the map: there is no content for a draft
   byId("mission-facts").textContent = factsOf(state, canPlan).join(" · ");
 }
 
@@ -160,7 +160,7 @@ function notice(level, image, title, text, acts = []) {
   );
 }
 
-/** Something to do here, or an address as it is when it is followed. @param {WayOut} way */
+/** An act, or an address evaluated when it is followed. @param {WayOut} way */
 function wayOut({ label, act, href }) {
   if (act || !href) return h("button", { type: "button", class: "text-button", onclick: act }, label);
   const link = h("a", { class: "text-button", href: href() }, label);

@@ -154,7 +154,7 @@ function fileInput(words, wrong) {
 }
 
 /**
- * How many were found, mean several things, are not known.
+ * Counts of references that were found, are ambiguous, or are unknown.
  *
  * @param {number} found
  * @param {number} several
@@ -218,7 +218,7 @@ function answer(results, externalIds, { add, back }) {
 }
 
 /**
- * One reference with several meanings: leave it out, take one, or all that are listed.
+ * A reference with several matches: skip it, choose one, or all that are listed.
  *
  * @param {LookupResult} result
  * @param {Map<string, string>} choices

@@ -113,7 +113,7 @@ export function figuresOf(route, limits) {
 }
 
 /**
- * The nearest that the route's UAV came to another one in the air: { away_m, other } or null.
+ * The closest approach of the route's UAV to another one in the air: { away_m, other } or null.
  *
  * @param {Assessment} assessment
  * @param {number} uav

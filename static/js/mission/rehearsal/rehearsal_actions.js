@@ -1,6 +1,6 @@
 /**
- * Starting, following and stopping rehearsals of the mission, and reading what came of them: store.rehearsal, which the
- * panel and the map listen to.
+ * Starting, following and stopping rehearsals of the mission, and reading their results: store.rehearsal, which the panel and the map
+ * listen to.
  */
 
 import { ApiError, get, isAbort, post } from "../../api.js";
@@ -36,7 +36,7 @@ export function createRehearsing(store, { isStage = false } = {}) {
   let asked = 0; // the last reading wins
 
   /**
-   * The rehearsals of the mission, and the newest of them; one that is being flown is followed.
+   * Read the rehearsals of the mission, and the newest in detail; a running one is followed.
    *
    * @param {string | null} [wanted]
    */
@@ -156,7 +156,7 @@ function createShowing(store, isStage) {
         if (detail?.runs[run]?.level) await showTrack(detail.id, run);
       }),
     /**
-     * The one that is wanted, shown or named by the address; else the newest that has ended.
+     * Show the requested rehearsal, the present one or that of the address; else the newest that has ended.
      *
      * @param {Rehearsal[]} list
      * @param {string | null} wanted
@@ -178,7 +178,7 @@ function createShowing(store, isStage) {
 }
 
 /**
- * Follows a rehearsal until it has been flown, then reads what came of it.
+ * Follow a rehearsal until it has been flown, then read its result.
  *
  * @param {MissionStore} store
  * @param {(wanted: string) => Promise<void>} read

@@ -24,7 +24,7 @@ import { curvesOf, rulesUpTo } from "./rehearsal.js";
  */
 
 const [TOP_PX, BOTTOM_PX, LEFT_PX] = [8, 14, 44];
-const WIDTH_PX = 344; // of the panel; the drawing is stretched to its place
+const WIDTH_PX = 344; // of the panel; the drawing is scaled to it
 
 /** @param {ChartOptions} options */
 function chart({ words, flown, planned, limit = null, highest = null, unit, text, height_px, longest_s, place }) {

@@ -20,11 +20,11 @@ import { passedZones, zoneWords } from "../zones_passed.js";
 
 const MIN_SPAN_M = 60; // so that a plain does not look mountainous
 const NEAR_ZONE_M = 300;
-const MAX_VERTICES = 1_900; // of the 2,000 that the server takes
+const MAX_VERTICES = 1_900; // of the server's limit of 2,000
 const MAX_STEPS = 600;
 
 /**
- * Every k-th of the positions where there are more than the server takes; both ends stay.
+ * Every k-th of the positions where there are more than the server accepts; both ends stay.
  *
  * @template Item
  * @param {Item[]} positions

@@ -168,7 +168,7 @@ function pillOf(members) {
 const isOnStrip = (pill, start_px, end_px) => pill.x >= start_px - 1 && pill.x <= end_px + 1;
 
 /**
- * Pushes to the right, and what would leave the strip's end back to the left; nothing leaves the drawing.
+ * Move pills to the right so that they do not overlap, and those beyond the strip's end back to the left; all stay in the drawing.
  *
  * @param {{ x: number, true_x: number, width: number }[]} pills
  * @param {number} start_px

@@ -20,10 +20,10 @@ import { h } from "../../dom.js";
 const MIN_PX = 5; // less is a click
 
 /**
- * rows: the list of routes. strips: Map of sequence → what spanStrip gives. drop(keys, { sequence, index }).
+ * rows: the list of routes. strips: Map of sequence → result of spanStrip. drop(keys, { sequence, index }).
  *
- * Returns grab(event, keys, label) for a pill that is pressed. Escape, or letting go beside the routes, changes
- * nothing.
+ * Returns grab(event, keys, label) for a pill that is pressed. Escape, or a drop beside the routes, changes nothing.
+ * 
  *
  * @param {HTMLElement} rows
  * @param {{ strips: Map<number, Strip>, drop: (keys: string[], place: { sequence: number, index: number }) => void }} options

@@ -63,7 +63,7 @@ export async function commandBatch(store, kind, scopes, ways = null) {
 }
 
 /**
- * On Live it asks of which mission, with nothing chosen beforehand.
+ * On Live it asks for the mission, without a default.
  *
  * @param {MonitorStore} store
  * @param {MonitorPage} page

@@ -39,12 +39,12 @@ export function figuresLine({ measured, estimated, place }, mission) {
   return summary.length ? `${summary.join(", ")}.`.replace(/^./, (first) => first.toLocaleUpperCase()) : "";
 }
 
-const ANSWER_WITHIN_MS = 8_000; // a frozen connection never answers
+const ANSWER_WITHIN_MS = 8_000; // timeout for a frozen connection
 
 /** The UAV in its mission's plan. @param {LiveUav} uav @param {Map<string, Mission>} details */
 const plannedOf = ({ mission, place }, details) => details.get(mission ?? "")?.uavs[place ?? -1];
 
-/** @param {MonitorStore} store @param {number} id of a UAV @param {UnsentCommand | null} unsent null: it was sent, or is given up */
+/** @param {MonitorStore} store @param {number} id of a UAV @param {UnsentCommand | null} unsent null: it was sent or dropped */
 function keptUnsent(store, id, unsent) {
   const unsentNow = new Map(store.state.unsent);
   if (unsent) unsentNow.set(id, unsent);

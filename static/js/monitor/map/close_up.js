@@ -1,4 +1,4 @@
-/** A small map round the chosen UAV while its ring would be too small to read on the large one. */
+/** A small map round the chosen UAV while its ring would be too small on the large one. */
 
 import { h, icon } from "../../dom.js";
 import { ESTIMATED, withinOf_m } from "../../domain/certainty.js";
@@ -20,7 +20,7 @@ import { createUavMarkers } from "./uav_markers.js";
 /** @typedef {{ map: MapLibreMap, redrawImages: () => void, markers: ReturnType<typeof createUavMarkers> | null }} SmallMap */
 
 const READABLE_PX = 24;
-const ROUND = 1.6; // of the ring that is shown
+const ROUND = 1.6; // of the shown ring
 
 /**
  * Whether the ring of an estimate is too small to read at a zoom.

@@ -150,7 +150,7 @@ export function showFlown(map, uavs) {
 }
 
 /**
- * The time of a last report is left out where the UAV itself would stand on it.
+ * Whether the last report is clear of the UAV itself; its time is left out otherwise.
  *
  * @param {MapLibreMap} map
  * @param {number[]} last

@@ -1,4 +1,4 @@
-/** From one report to the next a marker glides and never overshoots. Values in, values out. */
+/** Interpolation of a marker from one report to the next, without overshoot. Values in, values out. */
 
 export const GLIDE_MS = 300;
 

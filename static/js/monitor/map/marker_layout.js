@@ -1,16 +1,16 @@
-/** Where the labels of UAVs stand so that none covers another one, and which UAVs stand so close that a count stands for them. Values in, values out. */
+/** Layout of the labels of UAVs without overlaps, and of counts in place of UAVs close together. Values in, values out. */
 
 import { placeLabels } from "../../scene/label_places.js";
 
 /** @import { LabelPlaces } from "../../scene/label_places.js" */
 
 /** @typedef {{ id: number | string, x: number, y: number, width: number, height: number, weight: number }} PlacedMark x, y: centre of its mark [px]; width, height: of its label */
-/** A label's top left corner from the centre of its mark, and where its leader line ends; null: it stands beside its mark. @typedef {{ left: number, top: number, leader: { x: number, y: number } | null }} LabelSpot */
+/** A label's top left corner from the centre of its mark, and where its leader line ends; null: it is beside its mark. @typedef {{ left: number, top: number, leader: { x: number, y: number } | null }} LabelSpot */
 
 const CLOSE_PX = 16; // marks of 26 px cover most of each other
 const MIN_MEMBERS = 3; // two that overlap can still be distinguished
 const MARK_PX = 14; // half the size that no label may cover
-export const ALONE = 3; // a weight from which on a UAV never stands for in a count
+export const ALONE = 3; // from this weight on a UAV is never part of a count
 
 /** As in label_places.js: beside the mark, then farther off, where a leader line is drawn. */
 const TRIES = [
@@ -30,7 +30,7 @@ const TRIES = [
 const BESIDE = 4; // of the tries
 
 /**
- * Groups of at least three whose marks lie on each other. Those that weigh ALONE or more stand by themselves.
+ * Groups of at least three with overlapping marks. Marks with a weight of ALONE or more stay single.
  *
  * @template {Pick<PlacedMark, "x" | "y" | "weight">} Mark
  * @param {Mark[]} marks
@@ -54,9 +54,9 @@ export function clustersOf(marks) {
 }
 
 /**
- * A label without room is left out.
+ * Places of labels; one without room is left out.
  *
- * @param {PlacedMark[]} marks those that are shown by themselves
+ * @param {PlacedMark[]} marks single marks
  * @param {{ x: number, y: number }[]} others that no label may cover, such as counts
  * @param {{ width: number, height: number }} size of the map
  * @param {LabelPlaces} before the last answer's places

@@ -1,4 +1,4 @@
-/** The live map: what the store knows is drawn, what the pointer picks goes to the store. */
+/** The live map: draws the store's state, and stores what the pointer picks. */
 
 import { byId } from "../../dom.js";
 import { certaintyOf, LOST, MEASURED, standsAt } from "../../domain/certainty.js";
@@ -68,7 +68,7 @@ export function drawnUav(uav, now_ms, chosen, numbers = new Map()) {
 const drawnUavs = ({ uavs, now_ms, chosen, numbers }) =>
   uavs.flatMap((uav) => drawnUav(uav, now_ms, chosen, numbers) ?? []);
 
-/** Where UAVs are in the air, and the routes of their missions; everything that is planned where none is. @param {MonitorState} state */
+/** Positions of UAVs in the air, and the routes of their missions; all planned routes where none flies. @param {MonitorState} state */
 function placesToFit(state) {
   const flying = new Set(state.uavs.filter((uav) => inAir(uav) === true).map(({ id }) => id));
   const drawn = drawnUavs(state);

@@ -1,4 +1,4 @@
-/** Gives the markers of UAVs their labels' places, and puts a count where too many stand on each other. */
+/** Placement of the labels of UAV markers, with a count where too many overlap. */
 
 import { h, refill } from "../../dom.js";
 import { boxAround } from "../../map/map_view.js";

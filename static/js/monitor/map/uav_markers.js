@@ -62,7 +62,7 @@ function shapeOf(heading_deg) {
 /** @param {Parts} parts @param {MarkedUav} uav */
 function dress({ element, dart, letter, name, certainty, fact, alarm }, uav) {
   const look = new Set([uav.certainty, colourClass(uav.colour)]);
-  for (const kind of LOOKS) element.classList.toggle(kind, look.has(kind)); // the map has classes of its own on it
+  for (const kind of LOOKS) element.classList.toggle(kind, look.has(kind)); // the map adds its own classes
   element.classList.toggle("chosen", uav.isChosen);
   const level = uav.alarm ?? null;
   for (const kind of /** @type {const} */ (["critical", "warning"])) element.classList.toggle(kind, level === kind);
@@ -90,8 +90,8 @@ const lngLatOf = ([longitude, latitude]) => [longitude, latitude];
  *
  * @template {number | string} Id
  * @param {MapLibreMap} map
- * @param {{ onPick: (id: Id) => void, glide_ms?: number, spreads?: boolean }} options glide_ms: between two places; 0 where they follow each
- *   other as frames do; spreads: no label covers another one, and a count stands for many that stand on each other
+ * @param {{ onPick: (id: Id) => void, glide_ms?: number, spreads?: boolean }} options glide_ms: between two places; 0 where positions arrive in every frame; spreads: labels do not overlap, and a count replaces many overlapping markers
+ * 
  */
 export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS, spreads = false }) {
   /** @type {Map<Id, Flyer>} */

@@ -38,7 +38,7 @@ const ACT_WORDS = {
   "take-over": () => t("Pilot takes over"),
 };
 const HISTORY_AT_ONCE = 50;
-const MAX_ACKNOWLEDGED = 500; // in one request, as the API takes them
+const MAX_ACKNOWLEDGED = 500; // in one request of the API
 
 /** @param {Alert} alert */
 const closeButton = (alert) =>
@@ -108,7 +108,7 @@ const noteButton = (alert) =>
     icon("message-square", "small"),
   );
 
-/** @param {boolean} isQuiet there is another act beside it @param {() => void} onclick */
+/** @param {boolean} isQuiet whether there is another act beside it @param {() => void} onclick */
 const acknowledgeButton = (isQuiet, onclick) =>
   h(
     "button",
@@ -190,7 +190,7 @@ class AlertPanel {
     });
   }
 
-  /** Of the alert that has focus, or the first. */
+  /** Acknowledge the alert with focus, or the first. */
   acknowledgeFirst() {
     const own = document.activeElement?.closest(".alert");
     const wanted = "[data-act=acknowledge]";

@@ -31,9 +31,9 @@ import { makeHead, refreshHead, UavRow } from "./list_rows.js";
  * @property {boolean} isOfOne the page is one mission's, which then need not be named
  * @property {(uav: number) => void} pick
  * @property {(uav: number) => void} jumpTo
- * @property {() => void} close nothing is chosen any more
+ * @property {() => void} close clears the selection
  * @property {() => void} follow
- * @property {(shown: number, all: number) => void} showShown how many the filter lets through
+ * @property {(shown: number, all: number) => void} showShown count of UAVs that pass the filter
  * @property {Commanding | null} commanding null for who cannot fly
  */
 /** Facts on a card's UAV from other sources. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
@@ -202,7 +202,7 @@ class Card {
     );
   }
 
-  /** @param {LiveUav} uav @param {Readonly<MonitorState>} state @param {number} width_px of its strip, until it has one of its own */
+  /** @param {LiveUav} uav @param {Readonly<MonitorState>} state @param {number} width_px of its strip, until that has been measured */
   show(uav, state, width_px) {
     const { now_ms, missions, details, commands, alerts } = state;
     const known = {
@@ -296,7 +296,7 @@ class Card {
     refill(this.#battery, words, () => [words]);
   }
 
-  /** A command that could not leave this device, until it is sent or given up. @param {LiveUav} uav @param {UnsentCommand | null} unsent */
+  /** Show a command that could not be sent, until it is sent or dropped. @param {LiveUav} uav @param {UnsentCommand | null} unsent */
   #drawUnsent({ id, name }, unsent) {
     this.#unsent.hidden = unsent === null;
     const key = unsent ? `${unsent.key} ${unsent.isBusy} ${unsent.message}` : "";

@@ -33,7 +33,7 @@ function chosenFlyer(state) {
   return uav && !whyNot(uav) ? uav : null;
 }
 
-/** What Hold asks for now: a UAV that holds is resumed. @param {LiveUav} uav */
+/** The act of the Hold button: a UAV that holds is resumed. @param {LiveUav} uav */
 const holdOrResume = (uav) => (isHeld(uav) ? "resume" : "hold");
 
 /** @param {MonitorStore} store @param {Commanding} commanding */

@@ -86,7 +86,7 @@ export function mountHead(store, page) {
     const mission = missions.find(({ id }) => id === page.mission) ?? null;
     drawTitle(mission?.name ?? page.missionName ?? t("Live"));
     drawState(chip, mission);
-    const iso = new Date(now_ms).toISOString(); // stands still while the device has no data
+    const iso = new Date(now_ms).toISOString(); // stops while the device receives no data
     const facts = byId("live-facts");
     const summary = [exactClockText(iso), isWhole && countWords(uavs, missions, mission)];
     facts.textContent = summary.filter(Boolean).join(" · ");

@@ -81,7 +81,7 @@ const computingCard = (offer) =>
     h("p", { class: "caption" }, causeWords(offer)),
   );
 
-/** Of the mission that flies now. @param {Pick<MonitorState, "missions">} state @param {LiveOffer} offer */
+/** Colours of the mission in flight. @param {Pick<MonitorState, "missions">} state @param {LiveOffer} offer */
 const coloursOf = ({ missions }, { mission }) => missions.find(({ id }) => id === mission)?.colours;
 
 /** What each UAV would fly. @param {LiveOffer} offer @param {readonly number[]} [colours] of its mission */
@@ -180,7 +180,10 @@ const openTargets = (missions, id) =>
     .filter(({ state }) => state === "pending" || state === "in-progress")
     .map(({ label }) => label);
 
-/** Routes of the plan that is offered, by the UAVs that would fly them; none where it cannot be read. @param {LiveOffer} offer @param {readonly number[]} [colours] @returns {Promise<OfferedRoute[]>} */
+/**
+ * Routes of the offered plan, by the UAVs that would fly them; none where it cannot be read.
+ * @param {LiveOffer} offer @param {readonly number[]} [colours] @returns {Promise<OfferedRoute[]>}
+ */
 async function readRoutes(offer, colours) {
   try {
     const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${offer.continuation}`));

@@ -392,7 +392,7 @@ class BeforeStart {
   }
 }
 
-/** To all that have nothing yet; of the revision that was just read. @param {string} mission */
+/** Upload to all UAVs without a mission; of the revision that was just read. @param {string} mission */
 async function upload(mission) {
   const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission}`));
   const headers = { "If-Match": `"${data.revision}"`, "Idempotency-Key": freshKey() };

@@ -204,7 +204,7 @@ class SimulationPanel {
 }
 
 /**
- * Simulated UAVs stand in for those of a mission that are simulated. Rejects with ApiError.
+ * Start simulated flights for the simulated UAVs of a mission. Rejects with ApiError.
  *
  * @param {string | null} mission
  * @param {number} [speed] times real time
@@ -227,7 +227,7 @@ export async function flyCopy(mission) {
   return data.mission ?? "";
 }
 
-/** What a simulation is begun with. @param {MonitorPage} page @param {Do} act */
+/** The form that starts a simulation. @param {MonitorPage} page @param {Do} act */
 function startForm(page, act) {
   const speed = choice("simulation-start-speed", SPEEDS);
   const air = choice("simulation-air", AIRS);
@@ -297,7 +297,7 @@ class ChangesInFlight {
     );
   }
 
-  /** @param {Simulation | null} flown null: nothing flies */
+  /** @param {Simulation | null} flown null: no simulation runs */
   show(flown) {
     this.#flown = flown;
     this.element.hidden = flown === null;
@@ -341,7 +341,7 @@ class ChangesInFlight {
     return `/simulations/${this.#flown?.id}`;
   }
 
-  /** UAVs that a fault is meant for. */
+  /** UAVs that a fault applies to. */
   #meant() {
     const vehicles = this.#flown?.vehicles ?? [];
     return this.#whose.value === ALL

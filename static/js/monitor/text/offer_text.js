@@ -39,7 +39,7 @@ const causeOf = ({ cause }) => /** @type {OfferCause} */ (cause ?? {});
 
 const MAX_NAMED = 4;
 
-/** "E402-2 stays open: plan a follow-up."; "" where nothing is known to be open. @param {readonly string[]} open labels of targets */
+/** "E402-2 stays open: plan a follow-up."; "" without known open targets. @param {readonly string[]} open labels of targets */
 function openWords(open) {
   const more = open.length - MAX_NAMED;
   const named = open.slice(0, MAX_NAMED).join(", ");
@@ -50,7 +50,7 @@ function openWords(open) {
 }
 
 /**
- * Of an offer that is over: { strong, rest }.
+ * Texts of a closed offer: { strong, rest }.
  *
  * @param {Pick<LiveOffer, "state" | "outcome" | "decided_by" | "decided_at">} offer
  * @param {readonly string[]} [open] labels of targets that no plan reaches
@@ -65,7 +65,7 @@ export const overWords = ({ state, outcome, decided_by, decided_at }, open = [])
 /** @param {Pick<LiveOffer, "state">} offer */
 export const isUndecided = ({ state }) => state === "computing" || state === "open";
 /**
- * Of a zone: which one, and between which targets it lies across whose route.
+ * The cause of an offer: for a zone its name, and between which targets it lies across whose route.
  *
  * @param {Pick<LiveOffer, "code" | "cause">} offer
  */
@@ -134,14 +134,14 @@ export const uavLines = (offer) =>
     };
   });
 
-/** Per target that changes hands or is given up: ["Tower 31: B → C", …] @param {Pick<LiveOffer, "difference">} offer */
+/** Per target that is moved to another UAV or dropped: ["Tower 31: B → C", …] @param {Pick<LiveOffer, "difference">} offer */
 export const targetLines = (offer) =>
   (differenceOf(offer).targets ?? []).map(
     ({ label, from, to, message }) =>
       `${label}: ${from === null ? "—" : routeLetter(from)} → ${to === null ? message || t("not reached") : routeLetter(to)}`,
   );
 
-/** How long it can still be taken. @param {string} until @param {number} now_ms */
+/** The time left to accept it. @param {string} until @param {number} now_ms */
 export const validWords = (until, now_ms) =>
   t("Valid for {time}. Dashed on the map.", {
     time: countdownText(Date.parse(until) - now_ms),

@@ -19,7 +19,7 @@ export const AIRS = [
 ];
 const WEAK_SHARE = 0.2;
 const WIND_AGL_M = 10;
-const BEHIND_S = 2; // of real time that was lost, from which on it is shown
+const BEHIND_S = 2; // of lost real time, from which on it is shown
 
 /**
  * A fault by the name of its button.
@@ -138,7 +138,7 @@ export function vehicleWords({ state, message, report, conditions }) {
 }
 
 /**
- * One sentence about a simulation, and whether something is wrong with it.
+ * One sentence about a simulation, and whether it has a fault.
  *
  * @param {Simulation | null} simulation
  * @param {boolean} canFly

@@ -41,7 +41,7 @@ export const isReturning = (uav) => stateOf(uav).words === t("Returning");
 /** @param {Pick<LiveUav, "measured" | "link">} uav */
 export const isLanding = (uav) => stateOf(uav).words === t("Landing");
 
-/** { figure, isLate }: how old its newest report is, "0.7 s"; null where there is none. @param {LiveUav} uav @param {number} now_ms */
+/** { figure, isLate }: the age of its newest report, "0.7 s"; null without one. @param {LiveUav} uav @param {number} now_ms */
 export function ageWords(uav, now_ms) {
   const age_s = reportAge_s(uav, now_ms);
   if (age_s === null) return { figure: null, isLate: false };

@@ -37,7 +37,7 @@ const looksOut = ({ mode }) => mode === "free" || mode === "onboard";
 
 /**
  * @typedef {object} HandActs
- * @property {() => void} onChange something has moved
+ * @property {() => void} onChange called after a movement
  * @property {(at: { x: number, y: number }) => void} onPick a click or tap at a place of the picture
  */
 

@@ -20,16 +20,16 @@ const BEGINNINGS = {
   orbit: { bearing_deg: 215, elevation_deg: 14, distance_m: 110 }, // bearing: from the target to the camera
   top: { bearing_deg: 0, elevation_deg: 90, distance_m: 420 },
   free: { bearing_deg: 0, elevation_deg: -12, distance_m: 0 }, // bearing, elevation: of the camera's target
-  onboard: { bearing_deg: 0, elevation_deg: -18, distance_m: 0 }, // bearing: beside the nose
+  onboard: { bearing_deg: 0, elevation_deg: -18, distance_m: 0 }, // bearing: to the side of the nose
 };
 const FIELDS_DEG = { chase: 50, orbit: 45, top: 40, free: 55, onboard: 65 };
 /** @type {Partial<Record<CameraMode, number>>} */
 const MIN_DISTANCE_M = { chase: 3, orbit: 5, top: 25 };
 const MAX_DISTANCE_M = 60_000;
 const FIT_MARGIN = 1.2; // bars cover the picture's edges
-const ABOVE_GROUND_M = 1.6; // a camera is never lower
+const ABOVE_GROUND_M = 1.6; // minimum height of a camera
 const FOLLOWS_S = 0.35; // time constant of a heading that is followed
-const GLIDES_S = 0.22; // of a camera that is sent elsewhere
+const GLIDES_S = 0.22; // time constant of a camera's move to another place
 
 /**
  * @param {Vector} centre
@@ -89,7 +89,7 @@ export function createRig({ isCalm = () => false } = {}) {
     isMoving: eyes.isMoving,
     settle: eyes.settle,
     view,
-    /** From where it stands it glides there; free begins where the last camera was. @param {CameraMode} mode */
+    /** Set the mode; the camera glides there from its present place, and free begins at the last camera. @param {CameraMode} mode */
     setMode(mode) {
       if (!CAMERAS.includes(mode) || mode === rig.mode) return;
       const shown = eyes.shown();
@@ -135,7 +135,7 @@ export function createRig({ isCalm = () => false } = {}) {
 }
 
 /**
- * Where the camera stands in each frame: it follows a heading, and glides where it is sent elsewhere.
+ * The camera's pose in each frame: it follows a heading, and glides to a new place.
  *
  * @param {RigState} rig
  * @param {Record<CameraMode, CameraView>} views
@@ -197,7 +197,7 @@ function createEyes(rig, views, isCalm) {
       mustSettle = false;
       return { up: [0, 1, 0], ...shown, field_deg: FIELDS_DEG[rig.mode] };
     },
-    /** Whether the next frame would be another one though nothing flies. @param {Subject | null} subject */
+    /** Whether the next frame would differ although no UAV moves. @param {Subject | null} subject */
     isMoving: (subject) =>
       rig.isGliding ||
       (rig.mode === "chase" &&
@@ -224,7 +224,7 @@ function handled(rig, view, followed_deg, goFree) {
       const [least, most] = rig.mode === "free" || rig.mode === "onboard" ? [-85, 60] : [-12, 88];
       own.elevation_deg = within(own.elevation_deg + up_deg, least, most);
     },
-    /** Above 1: farther away; the free camera goes back and forth. @param {number} factor */
+    /** Above 1: farther away; the free camera moves back and forth. @param {number} factor */
     zoom(factor) {
       if (rig.mode === "free") hand.move(Math.log(factor) * -60, 0, 0);
       else if (rig.mode !== "onboard")

@@ -7,7 +7,7 @@ import { frameLoop } from "../picture/frame_loop.js";
 import { drawUavs, drawWays } from "./flat_flight.js";
 import { drawGround } from "./flat_ground.js";
 
-const FIELD_DEG = 40; // of the camera from above: the same place and width in both pictures
+const FIELD_DEG = 40; // of the camera from above: same place and width in both pictures
 
 /** @import { FlownRoute, PlannedLine } from "../flight/drawn_flight.js" */
 /** @import { Picture, PictureOptions, Size, Vector } from "../types.d.ts" */

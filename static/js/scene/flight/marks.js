@@ -20,7 +20,7 @@ import {
 /** @typedef {(place: Vector) => number} MetresPerPixel */
 
 const WIND_ABOVE_M = 0.4; // the arrow's height over the UAV
-const WIND_BESIDE_M = 0.9; // of its tip from the UAV: it points at it from where the wind comes
+const WIND_BESIDE_M = 0.9; // of its tip from the UAV: it points at the UAV from where the wind comes
 const WIND_AT_NIGHT = "#d3dfe8";
 const FULL_WIND_MPS = 12; // an arrow of full length
 const DASHES = 24;

@@ -27,10 +27,10 @@ import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
 /** @typedef {ReturnType<typeof createUavs>} Uavs */
 
-const MIN_PX = 40; // across: from far away it is drawn larger than it is
+const MIN_PX = 40; // across: drawn larger from far away
 const CONE_M = 14;
 const GLOW = 0.4;
-const MAX_CONE = 1.6; // times that, from far away
+const MAX_CONE = 1.6; // factor of that, from far away
 const CONE_HALF_DEG = 22; // half the width that an inspection camera sees
 const LIT_DARK = "#66727a"; // what shines of it where all else is dark
 const ROTOR_LIGHT = 5; // times its own colour, there
@@ -69,7 +69,7 @@ const hollow = (inner, rim) =>
     side: DoubleSide,
   });
 
-/** It is never as dark as the night: some of its own colour shines. @param {MeshStandardMaterial} material */
+/** Add some emission of its own colour, so that it is never as dark as the night. @param {MeshStandardMaterial} material */
 function litFromWithin(material) {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
@@ -100,7 +100,7 @@ function many(geometry, material, count) {
   return mesh;
 }
 
-/** Everything that UAVs are drawn with. @param {number} count of UAVs at most */
+/** All meshes of UAVs. @param {number} count of UAVs at most */
 function meshesOf(count) {
   const body = bodyShape();
   const cone = new ConeGeometry(Math.tan(CONE_HALF_DEG * RADIANS) * CONE_M, CONE_M, 4, 1, true)

@@ -27,8 +27,8 @@ import {
 const ROUTES = 8;
 const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
 const FLOWN = { width_m: 0.42, least_px: 3.2, most_px: 8, poles_m: 60 };
-const APART_M = 0.4; // points of a way that are nearer to each other show nothing more
-const MAX_LENGTH_M = 20; // of a stretch: between its ends its width is in proportion, which is right for a short one alone
+const APART_M = 0.4; // nearer points of a path add no visible detail
+const MAX_LENGTH_M = 20; // of a stretch: its width is interpolated between its ends, which is right only for a short one
 const ALWAYS_S = -1e9; // a time that is over
 const FOR_EVER_S = 1e30;
 
@@ -117,7 +117,7 @@ function tangentsOf(positions) {
 const ATTRIBUTES = { position: 3, tangent: 3, along: 1, at: 1, route: 1, dashed: 1, side: 1 };
 
 /**
- * Without the points that lie next to each other; the first and the last one stay.
+ * The line without points close to each other; the first and the last one stay.
  *
  * @template {TimedPoints} Line
  * @param {Line} line

@@ -20,7 +20,7 @@ export function catenaryConstant(length_m, sag_m) {
 }
 
 /**
- * How far [m] the wire is below the straight line between its ends, at a share of the way.
+ * Sag of the wire [m] below the straight line between its ends, at a share of the length.
  *
  * @param {number} share
  * @param {number} length_m

@@ -9,7 +9,7 @@ import { area2 } from "./triangulate.js";
 /** @typedef {[column: number, row: number, toColumn: number, toRow: number]} Block */
 
 /**
- * Of a convex polygon [[x, z], …] the part where value(x, z) is not below 0; value is linear.
+ * The part of a convex polygon [[x, z], …] where value(x, z) is not below 0; value is linear.
  *
  * @param {Ring} polygon
  * @param {HeightAt} value
@@ -32,14 +32,14 @@ export function cutBy(polygon, value) {
 }
 
 /**
- * The same of several, without those of which nothing is left.
+ * The same for several polygons, without empty parts.
  *
  * @param {readonly Ring[]} parts
  * @param {HeightAt} value
  */
 const cut = (parts, value) => parts.map((part) => cutBy(part, value)).filter((part) => part.length > 0);
 
-const ALL = 1e-7; // of a block's area: so much less covers it, too
+const ALL = 1e-7; // of a block's area: a part smaller by this covers it, too
 
 /** Twice the area of convex polygons. @param {readonly Ring[]} parts */
 const areaOf = (parts) => parts.reduce((sum, part) => sum + Math.abs(area2(part)), 0);

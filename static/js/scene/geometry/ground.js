@@ -99,7 +99,7 @@ function meanOfEdge(heights, columns, rows) {
 }
 
 /**
- * Of each vertex, weighted by the area of its triangles.
+ * Normal of each vertex, weighted by the area of its triangles.
  *
  * @param {Float32Array} vertices
  * @param {readonly number[]} index

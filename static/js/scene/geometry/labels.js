@@ -1,4 +1,4 @@
-/** Where names may stand. Values in, a list out; the view draws them, and leaves out what would collide. */
+/** Places of names. Values in, a list out; the view draws them, and leaves out those that would overlap. */
 
 import { uncounted_m } from "./counted.js";
 

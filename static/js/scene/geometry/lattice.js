@@ -86,7 +86,7 @@ function body({ outline, fine }, { low, high, lowHalf_m, highHalf_m, legs_m, bra
 }
 
 /**
- * Heights between which crosses stand, as high as the body is wide there, at most nine.
+ * Heights of the crosses' ends: each cross as high as the body is wide there, at most nine.
  *
  * @param {number} low
  * @param {number} high

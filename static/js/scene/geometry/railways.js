@@ -131,7 +131,7 @@ function track({ railway, points, onDeck, heights }, ground) {
 }
 
 /**
- * Masts beside the outermost track, an arm over all, and for each track a contact wire below the wire that carries it.
+ * Masts beside the outermost track, an arm over all, and for each track a contact wire below its carrier.
  *
  * @param {Way} way
  * @param {number} wire_agl_m

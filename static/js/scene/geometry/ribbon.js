@@ -49,7 +49,7 @@ export function ribbon(positions, { width_m = 2 } = {}) {
 }
 
 /**
- * For each point the level direction to the right of the way, and how much longer the mitre is; at most twice.
+ * For each point the level direction to the right of the path, and the factor of the mitre's length; at most 2.
  *
  * @param {ArrayLike<number>} positions
  */

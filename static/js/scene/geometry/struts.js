@@ -39,7 +39,7 @@ export function memberMatrices({ ends, width_m }, into = new Float32Array(width_
     const [dx, dy, dz] = [ends[at + 3] - ends[at], ends[at + 4] - ends[at + 1], ends[at + 5] - ends[at + 2]];
     const length = Math.hypot(dx, dy, dz) || 1e-6;
     const [ux, uy, uz] = [dx / length, dy / length, dz / length];
-    // A side that is level where the member is not upright, so that prisms lie square.
+    // A side that is level where the member is not upright, so that prisms are square.
     const level = Math.hypot(ux, uz);
     const [sx, sy, sz] = level > 1e-4 ? [-uz / level, 0, ux / level] : [1, 0, 0];
     const [tx, ty, tz] = [sy * uz - sz * uy, sz * ux - sx * uz, sx * uy - sy * ux];

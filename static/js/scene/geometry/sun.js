@@ -1,4 +1,4 @@
-/** Where the sun stands. Numbers in, numbers out. */
+/** Position of the sun. Numbers in, numbers out. */
 
 const RADIANS = Math.PI / 180;
 const DAY_MS = 86_400_000;

@@ -170,7 +170,7 @@ function createWind(wind) {
 }
 
 /**
- * Asks for the air.
+ * The dialog of conditions.
  *
  * @param {Conditions | null} conditions
  * @param {(conditions: Conditions | null) => unknown} use null: calm and mild

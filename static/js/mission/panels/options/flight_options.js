@@ -1,4 +1,4 @@
-/** When the mission departs, in what air it flies and whether UAVs charge on towers. */
+/** Departure, conditions, and whether UAVs charge on towers. */
 
 import { byId, h } from "../../../dom.js";
 import { t } from "../../../text.js";

@@ -67,7 +67,7 @@ function axis(times) {
 }
 
 /**
- * Free spans are buttons: a click takes the moment that was pointed at, Enter the begin of the span.
+ * Free spans are buttons: a click selects the moment at the pointer, Enter the begin of the span.
  *
  * @param {LegalTimes} times
  * @param {ChartActs} acts

@@ -67,7 +67,7 @@ function behaviourChoice(store, actions) {
   ];
 }
 
-/** For how long UAVs hold before they return. @param {MissionStore} store @param {MissionActions} actions */
+/** The field of the time that UAVs hold before they return. @param {MissionStore} store @param {MissionActions} actions */
 function holdField(store, actions) {
   const fault = faultPlace("lost-link-hold-fault");
   const hold = h("input", {

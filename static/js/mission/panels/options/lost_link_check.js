@@ -41,7 +41,7 @@ export function createLinkCheck(store, showPlaces) {
     const checked = now === "home" || now === "lost" ? plan : null;
     element.hidden = now === "go-on";
     const inZones = checked ? link.inZonesText(checked) : "";
-    const seen = inZones ? "lost" : now; // no tick over a place where nothing may land
+    const seen = inZones ? "lost" : now; // no tick over a place where landing is forbidden
     element.dataset.state = seen;
     summary.replaceChildren(
       ...(ICONS[seen] ? [icon(ICONS[seen], "small")] : []),

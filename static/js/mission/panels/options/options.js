@@ -1,4 +1,4 @@
-/** What the plan is to be best at, each with its figures once it is planned, and whether UAVs fly back. */
+/** The objective of the plan, each with its figures once planned, and whether UAVs fly back. */
 
 import { byId, find, h } from "../../../dom.js";
 import { t } from "../../../text.js";
@@ -36,7 +36,7 @@ export function mountOptions(store, actions, canPlan) {
   back.disabled = !canPlan;
   back.addEventListener("change", () => actions.setOption("return_to_start", back.checked));
 
-  /** Beside the routes once there are some: the choice is then between two results. @param {MissionPageState} state */
+  /** Move beside the routes once there are some: the choice is then between two results. @param {MissionPageState} state */
   function settle({ plan }) {
     const place = plan ? byId("objective-of-plan") : home;
     if (group.parentElement !== place) place.append(group);

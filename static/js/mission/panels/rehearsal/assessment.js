@@ -254,7 +254,7 @@ const iconOf = (level) => (level ? LEVELS[level] : "circle-dashed");
 const levelMark = (level) =>
   h("span", { class: `rehearsal-level ${level || "open"}` }, icon(iconOf(level), "small"), levelWords(level));
 
-/** Conditions as a request names them: those of a run once more. @param {RehearsalConditions} conditions */
+/** Conditions of a run in the form of a request, for another run. @param {RehearsalConditions} conditions */
 const askedAgain = ({ code, name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent }) =>
   code === "own" ? { name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent } : code;
 

@@ -149,8 +149,8 @@ const chartOf = (route, flight, { uavs, targets }, size, store) =>
   });
 
 /**
- * What the drawn zones mean, and by how much they count beyond their times and heights. While the pointer glances at a route the row keeps
- * its room: the map above must not move under the pointer.
+ * The meaning of the drawn zones, and their margins of time and height. While the pointer previews a route the row keeps its height: the
+ * map above must not move under the pointer.
  *
  * @param {RouteFlight} flight
  * @param {boolean} isGlance

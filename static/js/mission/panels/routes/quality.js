@@ -1,4 +1,4 @@
-/** Above the strips: how good the plan is, how its UAVs are kept apart, what locking costs, and the way back. */
+/** Above the strips: the quality of the plan, separation of its UAVs, the cost of locks, and the way back. */
 
 import { byId, h, icon, setChildren } from "../../../dom.js";
 import { t } from "../../../text.js";

@@ -1,21 +1,21 @@
-/** How much of the dock is left for the strips of the routes. */
+/** Room in the dock for the strips of the routes. */
 
 import { find } from "../../../dom.js";
 
 const BESIDE_PX = 184 + 84 + 72 + 80 + 4 * 12 + 32; // name, figures, hand and Why, gaps and edges, as in planning.css
 const BATTERY_PX = 76 + 12; // where one has a battery
 const LENGTH_PX = 84 + 12;
-const MIN_STRIP_PX = 200; // else length and battery give way
+const MIN_STRIP_PX = 200; // below this, length and battery are hidden
 const MIN_PX = 160;
 
 /** @param {HTMLElement} dock */
 export const mainOf = (dock) => find(dock, ".dock-main", HTMLElement);
 
-/** What the grid leaves beside name and all figures. @param {HTMLElement} dock */
+/** Width that the grid leaves beside name and all figures. @param {HTMLElement} dock */
 const roomBesideAll = (dock) =>
   mainOf(dock).clientWidth - BESIDE_PX - (dock.classList.contains("with-battery") ? BATTERY_PX : 0);
 
-/** Whether length and battery have to give way. @param {HTMLElement} dock */
+/** Whether length and battery must be hidden. @param {HTMLElement} dock */
 export const isTight = (dock) => roomBesideAll(dock) < MIN_STRIP_PX;
 
 /**

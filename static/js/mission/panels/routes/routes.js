@@ -101,7 +101,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   });
   store.listen(["plan"], ({ plan, planIsStored }) => {
     if (plan) strips.lookForZones(plan, () => draw(store.state));
-    if (!planIsStored) dock.closest(".side-scroll")?.scrollTo({ top: 0 }); // on a phone the result of planning stands first
+    if (!planIsStored) dock.closest(".side-scroll")?.scrollTo({ top: 0 }); // on a phone the result of planning comes first
   });
   store.listen(["lookedAt", "chosenRoute", "litTarget"], mark);
   store.listen(["along"], (state) => {

@@ -101,7 +101,7 @@ export function routeRow(route, context) {
 }
 
 /**
- * Length, time and battery; beside a plan before also the differences.
+ * Length, time and battery; with an earlier plan also the differences.
  *
  * @param {ShownRoute} route
  * @param {RowContext} context

@@ -43,7 +43,7 @@ export function createChoosing(store, { canPlan, order }) {
       choose(isChosen(target) ? chosenTargets.filter((key) => key !== target.key) : [...chosenTargets, target.key]);
     },
     /**
-     * All from where the range begins, at `from` where none has begun yet.
+     * Choose all from the begin of the range, or from `from` where there is none.
      *
      * @param {PickedTarget} target
      * @param {PickedTarget} [from]

@@ -13,8 +13,7 @@ const CHANGEABLE = ["draft", "planned"];
 const MAX_SHOWN = 4;
 
 /**
- * What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know
- * of.
+ * Changes that concern the present page: figures that are still the old ones, and states that its plan does not contain.
  *
  * @param {State} state
  */
@@ -26,7 +25,7 @@ export function shownChanges({ mission, selection, plan, planIsStored }) {
     .filter(({ figures, state, said }) => figures.length > 0 || state !== null || said.length > 0);
 }
 
-/** Null where nothing has changed. @param {State} state @param {MissionActions} actions @param {boolean} canPlan */
+/** The notice on changes of UAVs; null without changes. @param {State} state @param {MissionActions} actions @param {boolean} canPlan */
 export function uavNotice(state, actions, canPlan) {
   const changes = shownChanges(state);
   if (!state.mission || !changes.length) return null;

@@ -161,7 +161,7 @@ const ownFigures = ({ battery_wh, reserve_percent, mass_kg, max_airspeed_mps }, 
   );
 
 /**
- * Beside the fields that it is about, else below them all.
+ * Show the refusal beside the fields that it concerns, else below them all.
  *
  * @param {unknown} error
  * @param {Map<string, Input>} inputs

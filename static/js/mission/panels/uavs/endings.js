@@ -1,4 +1,4 @@
-/** Where UAVs do not all fly back: how the flight of each one ends, beside the switch. */
+/** How the flight of each UAV ends, beside the switch; where not all fly back. */
 
 import { byId, find, h, keyedList } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";

@@ -41,7 +41,7 @@ export const END_CHOICES = [
 /** @type {Partial<Record<string, number>>} */
 const UNITS = { max_airspeed_mps: SPEED_UNIT.mps };
 
-let made = 0; // each field has an id of its own
+let made = 0; // each field has its own id
 
 /** @param {string} label @param {Input} input @param {string} [unit] */
 export function field(label, input, unit = "") {
@@ -131,7 +131,7 @@ export function createFields(uav) {
     ...byName,
     /** @type {Record<string, Input>} */
     byName,
-    /** What counts in empty fields stands in them in grey. @param {Record<OwnFigure, number | null>} usual */
+    /** Show the values in effect as placeholders of empty fields. @param {Record<OwnFigure, number | null>} usual */
     showUsual(usual) {
       for (const [figure, value] of /** @type {[OwnFigure, number | null][]} */ (Object.entries(usual)))
         byName[figure].placeholder = `${shownIn(value, UNITS[figure] ?? 1)}`;
@@ -157,7 +157,7 @@ export function createFields(uav) {
   };
 }
 
-/** How many targets and flights a UAV of a mission makes at most. @param {DialogUav} uav */
+/** Fields of the maximum of targets and flights of a UAV in a mission. @param {DialogUav} uav */
 export function createLimits(uav) {
   const input = { class: "input", type: "number", min: 1, step: 1 };
   const most = h("input", {

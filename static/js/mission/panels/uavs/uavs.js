@@ -105,7 +105,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
   store.listen(["fleet", "selection", "plan", "mission", "arrival"], refresh);
 
   return {
-    /** Asks for the name of a UAV that takes off at a place; Enter takes the middle of the map. */
+    /** Ask for the name of a UAV that takes off at a place; Enter uses the middle of the map. */
     askForUav(position = mapCentre()) {
       store.update({ tool: "point" });
       askForNew(store, actions, position);

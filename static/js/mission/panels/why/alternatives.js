@@ -1,4 +1,4 @@
-/** The four ways of planning side by side: what each gives, the present one marked, one click takes one. */
+/** The four objectives side by side: figures of each, the present one marked, one click chooses one. */
 
 import { h, icon } from "../../../dom.js";
 import { t } from "../../../text.js";
@@ -68,7 +68,7 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
 }
 
 /**
- * For each column whether a way is as good as the best there, and not all are. Who reaches fewer targets than another wins nothing.
+ * For each column whether a plan equals the best there, unless all do. A plan that reaches fewer targets than another is never best.
  *
  * @param {Pick<Way, "result">[]} ways
  */

@@ -123,7 +123,7 @@ function createWalk(store, actions) {
 }
 
 /**
- * The chosen waypoint: its fields, one more after it, away with it.
+ * The chosen waypoint: its fields, and buttons that insert one after it and remove it.
  *
  * @param {MissionStore} store
  * @param {MissionActions} actions

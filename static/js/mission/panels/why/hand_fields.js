@@ -26,7 +26,7 @@ const field = (label, input, unit) =>
   );
 
 /**
- * Of the leg to a point as the server flies it; null while that is not known.
+ * Speed over the leg to a point as checked by the server; null while unknown.
  *
  * @param {HandEdit} hand
  * @param {number} index

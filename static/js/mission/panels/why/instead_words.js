@@ -16,7 +16,7 @@ const MIN_S = 30; // less is no other time
 const timeFor_s = ({ length_m, duration_s }, more_m) => (length_m > 0 ? (more_m * duration_s) / length_m : 0);
 
 /**
- * How much later the last UAV would be done: the target's own hover time goes with it and counts with neither.
+ * Delay of the last UAV's end: the target's own hover time moves with it and counts for neither.
  *
  * @param {RouteExplanation} explanation
  * @param {ShownPlan["result"]} result

@@ -55,7 +55,7 @@ export function partsOf({ zones, straight_m, on_lines_m, round_zones_m }) {
     {
       name: "zones",
       words: names ? t("Round {zones}", { zones: names }) : t("Round no-fly zones"),
-      length_m: round_zones_m ?? 0, // null: too much to work out
+      length_m: round_zones_m ?? 0, // null: too large to compute
     },
   ];
   return list.filter(({ name, length_m }) => name === "straight" || length_m >= MIN_M);
@@ -85,7 +85,7 @@ function parts(explanation) {
 }
 
 /**
- * Each zone that forces a detour, how much, and what makes it one: heights and times, once they are read.
+ * Zones that force a detour, its length, and their heights and times, once they are read.
  *
  * @param {RouteExplanation} explanation
  */

@@ -38,7 +38,7 @@ function questionOf({ result, targets, uavs, charging_w }) {
   });
 }
 
-/** Asks each question about a plan once. */
+/** Create a cache that requests each explanation of a plan once. */
 function createQuestions() {
   /** @type {WeakMap<PlanResult, Map<string, Promise<unknown>>>} */
   const answers = new WeakMap();
