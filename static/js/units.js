@@ -143,7 +143,7 @@ export function voltageText(voltage_kv) {
 /**
  * Latitude comes first for readers; all code has longitude first. The decimal separator is a point in every language,
  * because the text is typed and copied.
- * 
+ *
  *
  * @param {readonly number[]} position longitude, latitude
  */

@@ -13,7 +13,7 @@ const NO_MARGINS = { time_s: 0, height_m: 0, terrain_m: 0 };
 
 /**
  * Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". Unknown counts as met.
- * 
+ *
  * route: of a plan; places: of its waypoints along the route [m]; departs_at: of the plan, null for at any time.
  *
  * @param {{ zones: ZoneAlong[], zone_margins?: ZoneMargins }} ground

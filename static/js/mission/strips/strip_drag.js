@@ -23,7 +23,7 @@ const MIN_PX = 5; // less is a click
  * rows: the list of routes. strips: Map of sequence → result of spanStrip. drop(keys, { sequence, index }).
  *
  * Returns grab(event, keys, label) for a pill that is pressed. Escape, or a drop beside the routes, changes nothing.
- * 
+ *
  *
  * @param {HTMLElement} rows
  * @param {{ strips: Map<number, Strip>, drop: (keys: string[], place: { sequence: number, index: number }) => void }} options
