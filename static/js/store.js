@@ -66,7 +66,7 @@ export function createHistory(store, name) {
   }
 
   return {
-    /** @param {Value} value @returns {boolean} whether it was another value */
+    /** @param {Value} value @returns {boolean} whether the value differed */
     changeTo(value) {
       const current = store.state[name];
       if (isSame(current, value)) return false;
@@ -87,7 +87,7 @@ export function createHistory(store, name) {
       show(/** @type {Value} */ (future.pop()));
       return true;
     },
-    /** The same step in other words, as the server has stored it: what went before can still be undone. @param {Value} value */
+    /** Replace the present value by the server's stored form of it: earlier steps can still be undone. @param {Value} value */
     settle(value) {
       show(value);
     },

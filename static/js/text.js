@@ -1,4 +1,4 @@
-/** Texts in the language of the page. English is written in the code and is the key; other languages are catalogues beside it. */
+/** Texts in the language of the page. The English text in the code is the key; other languages are catalogues beside it. */
 
 /** @typedef {Record<string, string | number | null | undefined>} Values of the places in braces */
 

@@ -1,4 +1,4 @@
-/** What a UAV's flight takes: bounds of its figures, and what counts where nothing is stated. As in planning/energy/performance.py. */
+/** Performance of UAVs: bounds of its figures, and defaults. As in planning/energy/performance.py. */
 
 export const USUAL_RESERVE_PERCENT = 20;
 /** The PX4 Iris. */
@@ -14,11 +14,11 @@ export const BOUNDS = Object.freeze({
 });
 /** @typedef {"battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps"} OwnFigure */
 
-/** What a UAV may have of its own. @type {OwnFigure[]} */
+/** Figures that a UAV may override. @type {OwnFigure[]} */
 export const OWN_FIGURES = ["battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps"];
 
 /**
- * What counts for a UAV of this type, or of none, where it has no figure of its own. A battery of its own needs a mass that is stated.
+ * The values in effect for a UAV of this type, or of none, without its own figures. A battery of its own requires a stated mass.
  *
  * @param {Partial<Record<OwnFigure, number | null>> | null | undefined} type
  * @returns {Record<OwnFigure, number | null>}

@@ -144,7 +144,6 @@ export function voltageText(voltage_kv) {
  * Latitude comes first for readers; all code has longitude first. The decimal separator is a point in every language,
  * because the text is typed and copied.
  *
- *
  * @param {readonly number[]} position longitude, latitude
  */
 export function coordinateText([longitude, latitude]) {
@@ -196,7 +195,7 @@ export function whenText(iso, now = new Date()) {
   return dayText(iso, now);
 }
 
-/** "10 Sep", with the year where it is another one. @param {string} iso @param {Date} [now] */
+/** "10 Sep", with the year if it is not the present one. @param {string} iso @param {Date} [now] */
 export function dayText(iso, now = new Date()) {
   const then = new Date(iso);
   /** @type {Intl.DateTimeFormatOptions} */
@@ -205,7 +204,7 @@ export function dayText(iso, now = new Date()) {
   return then.toLocaleDateString(LOCALE, parts);
 }
 
-/** "21 November", with the year where it is another one. @param {string} iso @param {Date} [now] */
+/** "21 November", with the year if it is not the present one. @param {string} iso @param {Date} [now] */
 export function longDayText(iso, now = new Date()) {
   const then = new Date(iso);
   /** @type {Intl.DateTimeFormatOptions} */
@@ -228,7 +227,7 @@ export function sinceText(seconds) {
   return hours ? `+${hours}:${two(minutes)}:${two(whole % 60)}` : `+${two(minutes)}:${two(whole % 60)}`;
 }
 
-/** Minutes by which the reader's clock is ahead of UTC at a moment [ms]. @param {number} moment */
+/** Offset of the reader's clock from UTC at a moment [ms], in minutes. @param {number} moment */
 export function minutesAheadOfUtc(moment) {
   const part = new Intl.DateTimeFormat("en-US", { ...zone, timeZoneName: "longOffset" })
     .formatToParts(new Date(moment))
@@ -237,7 +236,7 @@ export function minutesAheadOfUtc(moment) {
   return sign ? (sign === "-" ? -1 : 1) * (Number(hours) * 60 + Number(minutes)) : 0;
 }
 
-/** "Europe/Berlin, UTC+1": by which clock the reader's times are, at a moment. @param {string} iso */
+/** "Europe/Berlin, UTC+1": time zone of the reader at a moment. @param {string} iso */
 export function zoneText(iso) {
   const name = preferences.timeZone || new Intl.DateTimeFormat().resolvedOptions().timeZone;
   const ahead = minutesAheadOfUtc(Date.parse(iso));
@@ -246,7 +245,7 @@ export function zoneText(iso) {
   return name === "UTC" ? "UTC" : `${name}, ${figure}`;
 }
 
-/** "2026-11-21T19:30": a moment by the reader's clock, as a field for date and time takes it. @param {string} iso */
+/** "2026-11-21T19:30": a moment by the reader's clock, in the form of a field for date and time. @param {string} iso */
 export function typedMoment(iso) {
   const moment = Date.parse(iso);
   return new Date(moment + minutesAheadOfUtc(moment) * 60_000).toISOString().slice(0, 16);

@@ -3,7 +3,7 @@
 const WINDOW_MS = 60_000;
 
 /**
- * Create a clock of the server: `heard("2026-…")` takes the time in each message; `now_ms()` is the server's time now, in milliseconds
+ * Create a clock of the server: `received("2026-…")` takes the time in each message; `now_ms()` is the server's time now, in milliseconds
  * since 1970.
  */
 export function serverClock(ticks_ms = () => performance.now(), first_ms = Date.now()) {

@@ -1,4 +1,4 @@
-/** Keys of the 3D view, as the page's keyboard takes them. */
+/** Keys of the 3D view, in the form of the page's keyboard. */
 
 import { t } from "../text.js";
 import { CAMERA_KEYS, CAMERA_LONG } from "./camera_bar.js";

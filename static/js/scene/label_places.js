@@ -1,4 +1,4 @@
-/** Where labels stand so that none covers another one. Values in, values out. */
+/** Places of labels without overlaps. Values in, values out. */
 
 const GAP_PX = 3;
 

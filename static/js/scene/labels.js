@@ -22,7 +22,7 @@ const MAX_OF_GROUND = 14;
 const GROUND_REACH_M = { zone: 6_000, line: 2_500, tower: 420, bridge: 1_500, railway: 1_500 };
 const USUAL_REACH_M = 800;
 const SAME_M = 250;
-const TOUCHES_PX = 40; // beyond the edge nothing is measured
+const TOUCHES_PX = 40; // labels beyond the edge are not measured
 
 /** @param {HTMLElement} container */
 export function createLabels(container) {
@@ -123,7 +123,7 @@ function isFirstOfItsName() {
 }
 
 /**
- * Of the world's labels those that are near enough, the nearest and heaviest first.
+ * Of the world's labels the nearest and heaviest that are near enough.
  *
  * @param {readonly GroundLabel[]} labels
  * @param {Vector} eye the camera's place

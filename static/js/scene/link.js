@@ -37,7 +37,7 @@ export const sourceText = ({ kind, rehearsal, run }) =>
     ...(kind === "rehearsal" && rehearsal ? [rehearsal, ...(run === null || run === undefined ? [] : [run])] : []),
   ].join(":");
 
-/** Three figures, or null where the text is something else. @param {string | null} text @returns {Vector | null} */
+/** Three figures, or null for any other text. @param {string | null} text @returns {Vector | null} */
 const figures = (text) => {
   const found = (text ?? "").split(",").map(Number);
   return text && found.length === 3 && found.every(Number.isFinite) ? [found[0], found[1], found[2]] : null;

@@ -13,7 +13,7 @@ import { readSource } from "./sources/read.js";
 import { openStage } from "./stage.js";
 
 const KEPT_MS = 400; // delay until the address is updated after a change
-const TICK_MS = 500; // of a live source: silence is seen without a word
+const TICK_MS = 500; // for a live source: silence is detected without messages
 const AGAIN_MS = 30_000; // a record that still grows is read
 /** @type {Record<SourceKind, string>} */
 const SOURCE_WORDS = { plan: t("Planned"), rehearsal: t("Rehearsal"), live: t("Live"), record: t("Record") };
@@ -38,7 +38,7 @@ let timer;
 let following;
 let opened = 0; // the last one wins
 
-/** What the stage of the moment can do; nothing while there is none. */
+/** The acts of the present stage; without effect while there is none. */
 const acts = /** @type {SceneActs} */ (
   new Proxy(
     {},
@@ -136,7 +136,7 @@ function follow(source) {
 }
 
 /**
- * The record of a mission that still flies; what cannot be read now is read the next time.
+ * Read the record of a mission in flight again; after a failure it is read the next time.
  *
  * @param {Mission} mission
  * @param {WantedSource | null} wanted

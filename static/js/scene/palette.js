@@ -1,4 +1,4 @@
-/** The tokens that the 3D view draws with, as they stand now: those of the map, and water for the sky. */
+/** The present tokens of the 3D view: those of the map, and water for the sky. */
 
 import { readPalette, routeNumber } from "../domain/palette.js";
 
@@ -14,7 +14,7 @@ const MORE = {
 };
 
 /**
- * colours: those of the mission, in whose order the routes' colours then are.
+ * colours: those of the mission, which set the order of the routes' colours.
  *
  * @param {readonly number[]} [colours]
  * @param {(token: string) => string} [read]

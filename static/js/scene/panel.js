@@ -1,4 +1,4 @@
-/** The 3D view over the lower half of a page's map: the same view as on the page of its own. */
+/** The 3D view over the lower half of a page's map: the same view as on its own page. */
 
 import { ApiError, get } from "../api.js";
 import { h, icon } from "../dom.js";
@@ -23,7 +23,7 @@ import { openStage } from "./stage.js";
  *
  * @typedef {object} PanelOptions
  * @property {string} mission
- * @property {WantedSource | null} [wanted] null: the usual
+ * @property {WantedSource | null} [wanted] null: the default
  * @property {LoadedMission | null} [record] where the page has it already
  * @property {Player | null} [player] the page's own
  * @property {() => number} [now_ms] of a source that lives

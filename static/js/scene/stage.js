@@ -117,7 +117,7 @@ function createNotices() {
     quiet() {
       notice.hidden = true;
     },
-    /** Of a live source. @param {ReturnType<typeof staleWords>} summary */
+    /** Show that a live source is stale. @param {ReturnType<typeof staleWords>} summary */
     showStale(summary) {
       const words = [summary?.words, summary?.rest].filter(Boolean).join(" ");
       if (stale.dataset.words === words) return;
@@ -196,7 +196,7 @@ function ownPlayer({ span }, onMove) {
   return player;
 }
 
-/** Whether the time has jumped since the last asking. @param {Player} player */
+/** Create a check whether the time has jumped since the last call. @param {Player} player */
 function jumpsOf(player) {
   /** @type {number | null} */
   let last_ms = null;
@@ -209,7 +209,7 @@ function jumpsOf(player) {
 }
 
 /**
- * Opens the view in an element that has a size; null where it is not wanted any more.
+ * Open the view in an element that has a size; null where it is no longer wanted.
  *
  * @param {HTMLElement} root
  * @param {StageOptions} options
@@ -356,7 +356,7 @@ function watchLook(picture, firstPalette, colours) {
 const pictureActs = ({ source, scene, picture, flight, player, bar }) => ({
   kind: picture.kind,
   request: picture.request,
-  /** For measurements: of view.js, and how many towers stand within the picture. */
+  /** For measurements: figures of view.js, and the count of towers in the picture. */
   figures: () => (picture.figures ? { ...picture.figures(), towers: towersIn(picture, scene) } : null),
   /** A record has grown. @param {LoadedMission} loaded */
   renew(loaded) {
@@ -373,7 +373,7 @@ const pictureActs = ({ source, scene, picture, flight, player, bar }) => ({
   },
 });
 
-/** How many stand within the picture. @param {Picture} picture @param {Scene} scene */
+/** Count of towers in the picture. @param {Picture} picture @param {Scene} scene */
 function towersIn({ project, size, frame }, { supports }) {
   return supports.filter(({ kind, position, ground_amsl_m, height_m }) => {
     const at =

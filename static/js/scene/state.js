@@ -33,7 +33,7 @@ export function targetToSee({ targets }, wanted, task, route) {
 }
 
 /**
- * The day and hour that the sun stands at: those of the flight; without a departure ten in the morning, by the sun, of `today`.
+ * The day and hour of the sun: those of the flight; without a departure ten in the morning, solar time, of `today`.
  *
  * @param {Pick<FlightSource, "hasDate" | "departs_ms">} source
  * @param {number} at_ms

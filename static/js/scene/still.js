@@ -74,7 +74,7 @@ function drawLabel(context, { element, left, top, width, height }, scale, palett
   context.restore();
 }
 
-/** Gives a canvas to the reader as a PNG file. @param {HTMLCanvasElement} canvas @param {string} name */
+/** Download a canvas as a PNG file. @param {HTMLCanvasElement} canvas @param {string} name */
 export async function download(canvas, name) {
   /** @type {Blob | null} */
   const blob = await new Promise((resolve) => canvas.toBlob(resolve, "image/png"));

@@ -1,4 +1,4 @@
-/** The time of the view: play, the events, and a slider that goes through them. The same player as of the record page. */
+/** The time of the view: play, the events, and a slider. The same player as on the record page. */
 
 import { h, icon, svg } from "../dom.js";
 import { routeNumber } from "../domain/palette.js";
@@ -26,7 +26,7 @@ const MARKS = {
   alert: "M0 -5L5.5 4.5H-5.5Z",
 };
 
-/** How much of a span has passed. @param {TimeSpan} span @param {number} at_ms */
+/** The elapsed share of a span. @param {TimeSpan} span @param {number} at_ms */
 const shareOf = ({ from_ms, to_ms }, at_ms) => (at_ms - from_ms) / (to_ms - from_ms);
 
 /** @param {ReplayEvent} event @param {TimeSpan} span @param {readonly number[]} colours of the mission */
@@ -94,7 +94,7 @@ const button = (image, words, key, act) =>
     icon(image),
   );
 
-/** Play or stop, as the player stands. @param {HTMLButtonElement} play @param {Player} player */
+/** Show Play or Stop, by the player's state. @param {HTMLButtonElement} play @param {Player} player */
 function drawPlay(play, { isPlaying }) {
   const image = isPlaying ? "pause" : "play";
   if (play.dataset.image === image) return;
@@ -171,7 +171,7 @@ export function createTimeBar({ player, source, span: firstSpan, eventWords }) {
     player.seek(next?.at_ms ?? (direction > 0 ? span.to_ms : span.from_ms));
   }
 
-  /** Where the player stands. */
+  /** Show the player's position. */
   function show() {
     const { at_ms, speed, isPlaying } = player;
     drawPlay(play, player);

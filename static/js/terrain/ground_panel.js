@@ -80,7 +80,7 @@ export function mountGroundPanel(on) {
     height: (/** @type {number[]} */ position, /** @type {GroundHeight} */ height) =>
       put(...heightWords(position, height)),
     /**
-     * Shows a profile; `title` names what the line is, `canStepBack` offers to take the last point away.
+     * Show a profile; `title` names the line, `canStepBack` offers to remove the last point.
      *
      * @param {ProfileLine} profile
      * @param {TowerAlong[]} towers

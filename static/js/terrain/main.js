@@ -24,7 +24,7 @@ const HINTS = {
 };
 const KEYS_OF_PROFILE = ` ${t("Backspace takes the last point back, Esc ends.")}`;
 const MAX_SAMPLES = 1_500; // more than a drawing has pixels
-const REACH_PX = 24; // of the pointer from the profile's line, for the cursor
+const REACH_PX = 24; // distance of the pointer from the profile's line, for the cursor
 const MAX_TOWER_PAGES = 10;
 
 /** @type {ModelFeature[]} */

@@ -113,7 +113,10 @@ export function mountModelList(canCurate, on) {
   };
 }
 
-/** Resolves to whether the model is to go. @param {{ file_name: string }} model @returns {Promise<boolean>} */
+/**
+ * Ask for confirmation. Resolves to whether the model shall be removed.
+ * @param {{ file_name: string }} model @returns {Promise<boolean>}
+ */
 export function askToRemove({ file_name }) {
   return new Promise((resolve) => {
     /** @type {HTMLDialogElement} */

@@ -56,7 +56,7 @@ export function rulesOf(low_m, high_m) {
 }
 
 /**
- * Scales for a profile with its towers in a drawing of this size [px]. Null where nothing of the ground is known.
+ * Scales for a profile with its towers in a drawing of this size [px]. Null where no terrain is known.
  *
  * @param {ProfileLine} profile
  * @param {TowerAlong[]} towers

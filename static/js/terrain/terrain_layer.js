@@ -1,4 +1,4 @@
-/** Terrain on the map: how far the models reach, the line of the profile, its points and its cursor. */
+/** Terrain on the map: extent of the models, the line of the profile, its points and its cursor. */
 
 import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
 

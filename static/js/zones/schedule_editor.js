@@ -31,7 +31,7 @@ const offsetWords = () => {
  * The week as seven rows of 24 hours.
  *
  * @param {SchedulePeriod} period
- * @param {number} [ahead_h] by how much the clock that is drawn is ahead of UTC
+ * @param {number} [ahead_h] offset of the drawn clock from UTC
  */
 export function weekDrawing(period, ahead_h = 0) {
   const [left, row, width] = [30, 11, 290];

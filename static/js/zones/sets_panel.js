@@ -52,7 +52,7 @@ class SetsPanel {
     }
   };
 
-  /** Does something, then reads the sets again. @param {() => Promise<unknown>} act @param {string} [words] */
+  /** Carry out an act, then read the sets again. @param {() => Promise<unknown>} act @param {string} [words] */
   #attempt = async (act, words) => {
     try {
       await act();

@@ -17,7 +17,7 @@ const FORMATS = [
   ["geojson", "GeoJSON"],
 ];
 
-/** Opens a dialog that goes when it is closed. @param {string} title @param {...Child} content */
+/** Open a dialog that is removed when it is closed. @param {string} title @param {...Child} content */
 export function openDialog(title, ...content) {
   const dialog = h("dialog", { "aria-label": title }, h("h2", {}, title), content);
   dialog.addEventListener("close", () => dialog.remove());

@@ -24,7 +24,6 @@ const MIN_PX = 5; // less is a click
  *
  * Returns grab(event, keys, label) for a pill that is pressed. Escape, or a drop beside the routes, changes nothing.
  *
- *
  * @param {HTMLElement} rows
  * @param {{ strips: Map<number, Strip>, drop: (keys: string[], place: { sequence: number, index: number }) => void }} options
  */

@@ -91,7 +91,6 @@ const lngLatOf = ([longitude, latitude]) => [longitude, latitude];
  * @template {number | string} Id
  * @param {MapLibreMap} map
  * @param {{ onPick: (id: Id) => void, glide_ms?: number, spreads?: boolean }} options glide_ms: between two places; 0 where positions arrive in every frame; spreads: labels do not overlap, and a count replaces many overlapping markers
- *
  */
 export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS, spreads = false }) {
   /** @type {Map<Id, Flyer>} */

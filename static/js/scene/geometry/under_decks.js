@@ -1,4 +1,4 @@
-/** Whether a place lies on a bridge that carries rails, and how high its deck is. Values in, a function out. */
+/** Whether a place is on a bridge that carries rails, and the height of its deck. Values in, a function out. */
 
 /** @import { SceneBridge } from "../../api_types.d.ts" */
 /** @import { Frame, Ring } from "../types.d.ts" */
@@ -38,7 +38,7 @@ export function deckUnder(bridges, frame) {
 }
 
 /**
- * Whether a ray from the place crosses the ring an odd number of times.
+ * Whether the place is inside the ring: a ray from it crosses the ring an odd number of times.
  *
  * @param {Ring} ring
  * @param {number} x

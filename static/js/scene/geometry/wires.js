@@ -22,7 +22,7 @@ export function standing(support, frame) {
 }
 
 /**
- * Where something hangs at a support: [across_m, height_m] as a point in the frame.
+ * The point in the frame of a slot of a support: [across_m, height_m].
  *
  * @param {Stand} stand
  * @param {readonly number[]} slot
@@ -69,7 +69,7 @@ export function wiresOf(scene, frame) {
 }
 
 /**
- * Which slot goes to which: both ends sorted from left to right as the span is seen from its start, then from below.
+ * Pairs of slots to connect: both ends sorted from left to right as seen from the span's start, then from below.
  *
  * @param {{ support: Support, stand: Stand }[]} ends
  * @param {"slots" | "earth"} kind
@@ -93,7 +93,7 @@ function pairs(ends, kind, wanted) {
 }
 
 /**
- * Of more slots than wires: one side's where that is enough, else the inner ones.
+ * The slots to use where there are more than wires: those of one side if they suffice, else the inner ones.
  *
  * @param {readonly number[][]} slots
  * @param {number} wanted

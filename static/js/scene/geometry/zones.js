@@ -8,7 +8,7 @@ import { area2, triangulate } from "./triangulate.js";
 /** @import { Folds } from "./folds.js" */
 /** @import { Ground } from "./ground.js" */
 
-/** @typedef {Pick<SceneZone, "polygons" | "lower" | "upper">} Volume what a zone takes up */
+/** @typedef {Pick<SceneZone, "polygons" | "lower" | "upper">} Volume extent of a zone */
 /** @typedef {{ level: number, over: number }} Height the higher of a level y and the ground's with so much over it */
 /** @typedef {SurfaceParts & { uv: number[], fade: number[] }} WallParts */
 /** @typedef {{ x: number, z: number, low: number, high: number, share: number, along: number }} WallCorner */
@@ -18,10 +18,10 @@ import { area2, triangulate } from "./triangulate.js";
 export const WITHIN_M = 0.15; // largest deviation of a floor, ceiling or wall from the surface that it follows
 const MAX_BLOCKS = 300_000; // of the ground, under all floors and ceilings of a scene that follow it
 const ON_CLIP_DEG = 1e-6;
-const LIFT_M = 0.25; // a floor on the ground lies so far above it
+const LIFT_M = 0.25; // height of such a floor above the ground
 
 /**
- * How far zones may stray from the ground they follow: WITHIN_M, more where they would be too many triangles together.
+ * The permitted deviation of zones from the ground that they follow: WITHIN_M, more where there would be too many triangles.
  *
  * @param {readonly Volume[]} zones
  * @param {Frame} frame
@@ -188,7 +188,7 @@ function addWalls(ring, { frame, ground, folds, clip, low, high, kinks, isOpen, 
 }
 
 /**
- * Besides the shares of the way those where a surface goes over from its level to following the ground.
+ * The shares, with those where a surface changes between its level and the ground.
  *
  * @param {readonly number[]} shares
  * @param {(share: number) => number} groundAt
@@ -209,7 +209,7 @@ function withKinks(shares, groundAt, surfaces) {
 }
 
 /**
- * Without the corners that lie on the line between those kept, in both heights.
+ * Remove corners on the line between those kept, in both heights.
  *
  * @param {readonly WallCorner[]} corners
  * @param {number} within_m
@@ -254,7 +254,7 @@ function addPanel({ vertices, uv, fade, index }, edges, here, there, isOpen) {
 }
 
 /**
- * Whether the outline turns there by 20 degrees or more: a circle has no upright edges.
+ * Whether the outline turns at the corner by 20 degrees or more: a circle has no upright edges.
  *
  * @param {Ring} ring
  * @param {number} at
@@ -270,7 +270,7 @@ function isCorner(ring, at) {
 }
 
 /**
- * Whether a side of an outline is where the scene was cut.
+ * Whether a side of an outline lies on the cut of the scene.
  *
  * @param {number[]} clip
  * @param {number[]} place

@@ -1,4 +1,4 @@
-/** How far a UAV is from the nearest wire, tower and zone: in space, from the data that the scene is drawn from. Values in, values out. */
+/** Distances of a UAV to the nearest wire, tower and zone: in space, from the data of the scene. Values in, values out. */
 
 import { countedAir } from "../geometry/counted.js";
 
@@ -17,7 +17,7 @@ const FOOT_SHARE = 0.1; // of a tower's height: half its feet's width
 const CLEAR_OF_ALL_M = 250; // nothing is taller than this above the ground
 
 /**
- * Everything that can be near, in the frame: prepared once for a scene.
+ * All obstacles in the frame: prepared once for a scene.
  *
  * @param {Scene} sceneData
  * @param {Frame} frame
@@ -144,7 +144,7 @@ function nearestOf({ points, first, boxes, isCounted }, [x, y, z], reach_m) {
 }
 
 /**
- * The nearest tower as the pole that it stands round.
+ * The nearest tower, as a vertical pole.
  *
  * @param {Pick<Surroundings, "towers">} surroundings
  * @param {Vector} place
@@ -198,11 +198,11 @@ const limitAt = ({ above, m }, ground, origin_m, otherwise) =>
   above === "open" || m === null ? otherwise : above === "ground" ? ground + m : m - origin_m;
 
 /**
- * The nearest zone; beside it and over or under it together.
+ * The nearest zone, by horizontal and vertical distance together.
  *
  * @param {Pick<Surroundings, "zones" | "groundAt" | "origin_m">} surroundings
  * @param {Vector} place
- * @param {(zone: NearbyZone) => boolean} [keep] which count
+ * @param {(zone: NearbyZone) => boolean} [keep] which zones to include
  */
 export function nearestZone({ zones, groundAt, origin_m }, [x, y, z], keep = () => true) {
   /** @type {NearZone | null} */

@@ -1,4 +1,4 @@
-/** The instruments on the page: whose they are, and figures that change in place. */
+/** The instruments on the page: name of their UAV, and figures that are updated in place. */
 
 import { h } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";

@@ -16,7 +16,7 @@ const LANDING_MPS = -0.4;
 const CLIMBING_MPS = 0.4;
 
 /**
- * Before its first waypoint and after its last one it goes up or down.
+ * The vertical manoeuvre before the first waypoint and after the last one: climb or descent.
  *
  * @param {PlannedRoute} route
  * @param {Moment} moment

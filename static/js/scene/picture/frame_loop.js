@@ -2,7 +2,7 @@
 
 /** @import { FrameTime } from "../types.d.ts" */
 
-const MAX_STEP_S = 0.25; // after a pause nothing jumps
+const MAX_STEP_S = 0.25; // prevents jumps after a pause
 
 /** @typedef {FrameTime & { between_ms: number }} LoopTime between_ms: since the frame before; 0 after a pause */
 

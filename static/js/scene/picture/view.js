@@ -1,4 +1,4 @@
-/** The picture: renderer, camera and a loop that draws only when something is another than before. */
+/** The picture: renderer, camera and a loop that draws only changes. */
 
 import { Color, PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "../three.js";
 import { frameLoop } from "./frame_loop.js";
@@ -7,13 +7,13 @@ import { frameLoop } from "./frame_loop.js";
 /** @import { LoopTime } from "./frame_loop.js" */
 /** @import { FrameTime, Projected, Size, Vector } from "../types.d.ts" */
 
-const SLOW_MS = 45; // a frame that takes longer, many times over, is drawn with fewer pixels
+const SLOW_MS = 45; // after many slower frames in a row the picture has fewer pixels
 const SLOW_FRAMES = 12;
-const MAX_PIXELS = 2; // of the device a CSS pixel
+const MAX_PIXELS = 2; // device pixels for a CSS pixel
 const MIN_PIXELS = 0.75;
-const NEAR_SHARE = 0.25; // of the room round the camera: nothing is nearer than that
+const NEAR_SHARE = 0.25; // share of the free distance round the camera at which the near plane is
 const [MIN_NEAR_M, LOW_NEAR_M, MAX_NEAR_M] = [0.15, 2, 500];
-const LOW_M = 80; // with less room bridges and the like may stand beside it
+const LOW_M = 80; // with less free distance, bridges and similar may be beside it
 const FAR_M = 200_000;
 
 export class NoWebGL extends Error {}
@@ -108,10 +108,10 @@ function createAim(camera, size) {
   const seen = new Vector3();
   return {
     /**
-     * The near plane goes as far out as the room allows, so that depths stay apart.
+     * Move the near plane as far out as the free distance allows, for depth precision.
      *
      * @param {Pose} pose
-     * @param {number} room_m how near the nearest thing is
+     * @param {number} room_m distance to the nearest thing
      */
     aim({ eye, look, up, field_deg }, room_m) {
       camera.position.set(...eye);
@@ -122,7 +122,7 @@ function createAim(camera, size) {
       camera.updateProjectionMatrix();
       camera.updateMatrixWorld();
     },
-    /** Where a place stands on the screen; null behind the camera. @param {Vector} place @returns {Projected | null} */
+    /** Place on the screen; null behind the camera. @param {Vector} place @returns {Projected | null} */
     project(place) {
       seen.set(...place);
       const away_m = seen.distanceTo(camera.position);
@@ -215,7 +215,7 @@ export function createView(container, canvas, { draw, onLost = () => {}, onFound
     ...createAim(camera, size),
     /** Device pixels, as shaders count. */
     viewport: () => [size.width * pixels, size.height * pixels],
-    /** The picture as it stands now, on a canvas of its own. */
+    /** Copy the present picture to a new canvas. */
     copy() {
       draw({ dt_s: 0, now_ms: performance.now() });
       render();

@@ -11,7 +11,7 @@ import { placedSamples } from "./record_source.js";
 /** @import { FlightRoute, FlightSample, Moment, Piece, Wind } from "../types.d.ts" */
 
 /** @typedef {ReturnType<typeof liveSource>} LiveSource */
-/** @typedef {{ from: Moment, to: Moment, at_ms: number }} Glide the last two words of a UAV, and when the last one came */
+/** @typedef {{ from: Moment, to: Moment, at_ms: number }} Glide the last two messages of a UAV, and when the last one arrived */
 
 const GLIDE_MS = 300; // as the marker on the map
 const SILENT_MS = 45_000; // no ribbon over a longer silence
@@ -53,7 +53,7 @@ export function liveSample(uav, now_ms) {
 }
 
 /**
- * Puts a report behind a UAV's pieces; an older one, or the same, changes nothing. Returns whether it was put there.
+ * Append a report to a UAV's pieces; an older or equal one changes nothing. Returns whether it was appended.
  *
  * @param {Piece[]} pieces
  * @param {FlightSample} sample
@@ -109,7 +109,7 @@ function glidingAt({ from, to, at_ms }, now_ms) {
 }
 
 /**
- * A source that grows: take() with each word of the feed; momentAt() is where a UAV is shown.
+ * A source that grows: take() with each message of the feed; momentAt() returns a UAV's position.
  *
  * @param {{ detail: Mission, features?: readonly RecordFeature[] }} flown features: of the log until now
  */
@@ -157,7 +157,7 @@ export function liveSource({ detail, features = [] }) {
     /** Revision of the flown path's ribbon; increases when the path grows. */
     revision: 0,
     windAt: () => wind,
-    /** Returns whether anything is another than before. @param {{ uavs: readonly LiveUav[], now_ms: number }} received */
+    /** Take over a message. Returns whether anything has changed. @param {{ uavs: readonly LiveUav[], now_ms: number }} received */
     take({ uavs, now_ms }) {
       let isNew = false;
       for (const route of routes) {

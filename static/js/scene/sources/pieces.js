@@ -27,8 +27,8 @@ export const firstOf = ({ samples }) => samples[0];
 export const lastOf = ({ samples }) => samples[samples.length - 1];
 
 /**
- * Where a UAV is at a moment: numbers in proportion, headings the short way; null before the first sample. In a silence, and after the
- * last sample, it is LOST where it was last; after a landing it stands there.
+ * The state of a UAV at a moment: numbers interpolated, headings the short way; null before the first sample. In a silence, and after the
+ * last sample, it is LOST at its last place; after a landing it stays there.
  *
  * @param {readonly Piece[]} pieces by time
  * @param {number} at_ms
@@ -104,7 +104,7 @@ function indexAfter(samples, at_ms) {
   return low;
 }
 
-const METRES_PER_DEGREE = 111_195; // of latitude, on a sphere: for courses and speeds between neighbours alone
+const METRES_PER_DEGREE = 111_195; // of latitude, on a sphere: only for courses and speeds between neighbours
 
 /**
  * From one place to another: { metres, bearing_deg }, over a second's flight exact enough for a nose.

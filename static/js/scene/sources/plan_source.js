@@ -1,4 +1,4 @@
-/** A mission's plan as the view flies it: nothing has flown, UAVs are where they are meant to be. */
+/** A mission's plan as a source of the view: UAVs are at their planned positions. */
 
 import { labelsOf } from "../../record/labels.js";
 import { completed, firstOf, lastOf, PLANNED } from "./pieces.js";
@@ -103,7 +103,7 @@ export function planSource(detail) {
 }
 
 /**
- * Of layers by height: in proportion between two, outside as the nearest. null without.
+ * Wind of layers by height: interpolated between two, outside the nearest. null without layers.
  *
  * @param {readonly WindLayerOutput[]} layers
  * @param {number} height_m

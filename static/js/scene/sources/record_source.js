@@ -20,7 +20,7 @@ export const placedSamples = (samples) =>
   );
 
 /**
- * Pieces of a record's track, by time; a stretch of estimates goes from the report before it to the one after it.
+ * Pieces of a record's track, by time; a stretch of estimates extends from the report before it to the one after it.
  *
  * @param {Track} track
  */

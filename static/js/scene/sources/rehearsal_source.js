@@ -7,7 +7,7 @@ import { NO_DATE_MS, spanOf, targetsOf, windAtHeight } from "./plan_source.js";
 /** @import { ReplayEvent } from "../../record/timeline.js" */
 /** @import { FlightRoute, FlightSource } from "../types.d.ts" */
 
-const ON_GROUND_M = 0.3; // above take-off: lower, it stands
+const ON_GROUND_M = 0.3; // above take-off: lower, it is on the ground
 
 /**
  * Samples of one simulated flight: columns → rows. Older tracks have no attitude: it is level, its nose along its path.
@@ -66,7 +66,7 @@ export function rehearsalSource({ detail, track, mission }) {
 }
 
 /**
- * Take-offs, targets and landings of a run, as the record page has them.
+ * Take-offs, targets and landings of a run, in the form of the record page.
  *
  * @param {Assessment | null | undefined} assessment
  * @param {readonly FlightRoute[]} routes

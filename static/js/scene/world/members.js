@@ -14,8 +14,8 @@ import {
 
 /** @import { Members } from "../types.d.ts" */
 
-const MIN_PX = 0.9; // an outline is never thinner on the screen
-const MIN_SHADOW_PX = 2.4; // nor its shadow in the shadow map
+const MIN_PX = 0.9; // minimum width of an outline on the screen
+const MIN_SHADOW_PX = 2.4; // minimum width of its shadow in the shadow map
 const SIZE = new Vector2();
 
 /** fog and light as every Lambert surface; far members are made as wide as a pixel. @param {number} leastPx */

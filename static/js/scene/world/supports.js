@@ -6,7 +6,7 @@ import { Color, Group } from "../three.js";
 import { memberMesh } from "./members.js";
 
 const MAX_A_FRAME = 6; // supports that get their bracing
-const LOOK_AGAIN_M = 40; // the camera has moved so far since the near ones were chosen
+const LOOK_AGAIN_M = 40; // movement of the camera after which the near ones are chosen again
 
 /** @import { Support } from "../../api_types.d.ts" */
 /** @import { PerspectiveCamera, Vector3 } from "../three.js" */
@@ -62,7 +62,7 @@ function colourValues(pairs, colours) {
 /** @typedef {{ supports: readonly Support[], frame: Frame, groundAt: HeightAt }} Standing supports with their frame and terrain */
 
 /**
- * The fine members of the supports near the camera, worked out a few a frame.
+ * The fine members of the supports near the camera, computed a few a frame.
  *
  * @param {Bracing} bracing
  */
@@ -70,7 +70,7 @@ function nearMembers({ near_m, most }) {
   /** @type {Standing | null} */
   let standing = null;
   let feet = new Float32Array(0);
-  /** @type {Map<number, Members | null>} by place in supports; null: not worked out */
+  /** @type {Map<number, Members | null>} by place in supports; null: not computed */
   let near = new Map();
   /** @type {number[]} */
   let wanted = [];
@@ -181,7 +181,7 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
       outline.recolour(coloursOf(outlines));
       paintNear();
     },
-    /** Returns whether the next picture is another one. @param {Pick<PerspectiveCamera, "position">} camera */
+    /** Update for a camera. Returns whether the next picture differs. @param {Pick<PerspectiveCamera, "position">} camera */
     update({ position }) {
       const state = count ? near.follow(position) : "same";
       if (state === "new") paintNear();

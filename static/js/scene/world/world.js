@@ -63,7 +63,7 @@ const NO_WIRES = {
  * @property {ShownVolume[]} volumes
  */
 
-/** Everything that is drawn, as parts of one group. @param {Quality} quality */
+/** Create all drawn parts as parts of one group. @param {Quality} quality */
 function makeParts(quality) {
   const group = new Group();
   const lights = makeLights({ shadows: quality !== "low" });
