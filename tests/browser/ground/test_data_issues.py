@@ -132,4 +132,4 @@ def test_the_chosen_issue_stands_in_sight(
     expect(page.locator(".issue-sentence")).to_be_in_viewport()
     wait_for_map(page)
     expect(page.locator(".issue-acts .primary")).to_be_in_viewport()
-    picture(page, f"issues{suffix}-{theme}")
+    picture(page, f"data-issues{suffix}-{theme}")
