@@ -33,7 +33,7 @@ from scripts.test_run.reports import Report, allowed_skips, read_report, read_ta
 from scripts.test_run.second_try import cache_arguments, failed_tests, late_passes_file, note_late_passes, second_command
 
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
-TEST_WORKERS = min(8, (os.cpu_count() or 2) + 2)  # many of their tests mostly wait
+TEST_WORKERS = min(8, (os.cpu_count() or 2) + 1)  # some of their tests mostly wait
 TYPE_CHECKER = str(PROJECT_DIR / "node_modules" / "typescript-native" / "bin" / "tsc")
 SLOWEST_LISTED = 40  # tests of a step of 5 s and more
 BROWSER_WORKERS = 2  # each with a whole installation

@@ -117,8 +117,9 @@ def _update(rows: QuerySet[Any], values: dict[str, Any], *, skip_locked: bool = 
     update, parameters = change.sql_with_params()
     table, key = _quoted(meta.db_table), _quoted(meta.pk.column)
     lock = f"FOR UPDATE OF {table}{' SKIP LOCKED' if skip_locked else ''}"
-    sql = f"{update} FROM ({chosen} {lock}) AS chosen WHERE {table}.{key} = chosen.pk RETURNING {table}"
-    return sql, (*parameters, *chosen_parameters)
+    # Materialized: within a nested loop a subquery would run again for each row, and choose more rows than its limit.
+    sql = f"WITH chosen AS MATERIALIZED ({chosen} {lock}) {update} FROM chosen WHERE {table}.{key} = chosen.pk RETURNING {table}"
+    return sql, (*chosen_parameters, *parameters)
 
 
 def _quoted(name: str) -> str:

@@ -4,16 +4,11 @@
 """
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TypeVar
 
 import pytest
 
 from scripts.test_run.reports import Report, allowed_skips
-from scripts.test_run.second_try import WAITING_TESTS
-
-Item = TypeVar("Item")
 
 WORKER_VARIABLES = ("REDIS_URL", "SPANWISE_VAR")  # ./check gives a pattern of each, named CHECK_…
 DATABASE_FIXTURES = {"db", "transactional_db", "django_db_setup"}
@@ -37,23 +32,6 @@ def kind_of(item: pytest.Item) -> str:
         return "browser"
     uses_database = item.get_closest_marker("django_db") or DATABASE_FIXTURES & set(getattr(item, "fixturenames", ()))
     return "database" if uses_database else "unit"
-
-
-def waiting_first(items: Sequence[Item], is_waiting: Sequence[bool], workers: int) -> list[Item]:
-    """Return the items in an order in which each worker's part, of about equal length, begins with a share of the waiting ones.
-
-    pytest-xdist's `worksteal` cuts the list into such parts. Waiting tests run while the browser tests keep the cores busy; computing ones
-    follow, and no worker waits alone at the end.
-    """
-    waiting = [item for item, waits in zip(items, is_waiting, strict=True) if waits]
-    computing = [item for item, waits in zip(items, is_waiting, strict=True) if not waits]
-    found: list[Item] = []
-    for worker in range(workers):
-        length = (len(items) - len(found)) // (workers - worker)
-        share = len(waiting) // (workers - worker)
-        found += [*waiting[:share], *computing[: length - share]]
-        waiting, computing = waiting[share:], computing[length - share :]
-    return found
 
 
 def reason_of(report: pytest.TestReport | pytest.CollectReport) -> str:
@@ -98,14 +76,6 @@ def pytest_configure(config: pytest.Config) -> None:
     path = config.getoption("--check-report")
     if path and not hasattr(config, "workerinput"):
         config.pluginmanager.register(Reporter(path, config.rootpath))
-
-
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-    is_waiting = [item.nodeid.startswith(WAITING_TESTS) for item in items]
-    if workers > 1 and not all(is_waiting):
-        items[:] = waiting_first(items, is_waiting, workers)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import time
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ import pytest
 from scripts.check import SITL, TEST_WORKERS, steps
 from scripts.places import PROJECT_DIR, CannotStart
 from scripts.test_run.lanes import Step, run_all
-from scripts.test_run.plugin import use_own_servers, waiting_first
+from scripts.test_run.plugin import use_own_servers
 
 
 def _step(name: str, program: str, *, lane: str = "checks") -> Step:
@@ -141,22 +140,3 @@ def test_a_firmware_has_a_network_of_its_own_and_no_other_run_starts_it(tmp_path
     options = ["--collect-only", "-q", "-m", "", "tests/telemetry/scenarios"]
     collected = subprocess.run([sys.executable, "-m", "pytest", *options], cwd=PROJECT_DIR, capture_output=True, text=True)
     assert "[emulated" in collected.stdout and "[firmware" not in collected.stdout, "other runs fly them on the scripted vehicle"
-
-
-@pytest.mark.parametrize("workers", [2, 3, 4])
-def test_each_worker_begins_with_its_share_of_the_tests_that_wait(workers: int) -> None:
-    is_waiting = [number % 5 == 0 or number > 80 for number in range(103)]
-    ordered = waiting_first(range(103), is_waiting, workers)
-    assert sorted(ordered) == list(range(103))
-    starts, left = [0], 103
-    for worker in range(workers):  # as pytest-xdist cuts it
-        left -= (length := left // (workers - worker))
-        starts.append(starts[-1] + length)
-    for start, end in pairwise(starts):
-        part = ordered[start:end]
-        waits = [is_waiting[number] for number in part]
-        assert abs(sum(waits) - sum(is_waiting) / workers) < 1
-        assert waits == sorted(waits, reverse=True)
-        for kind in (True, False):  # modules stay together
-            numbers = [number for number in part if is_waiting[number] == kind]
-            assert numbers == sorted(numbers)

@@ -216,10 +216,10 @@ def test_what_became_of_a_command_is_said_in_words(client: Client) -> None:
     (held,) = claim(tern)
     note_failed(held.pk, "denied", "The UAV refused it.", **fence(held))
     hold, pause = get(client, f"uavs/{tern.pk}/commands").json()["results"]
-    assert (pause["state"], pause["outcome_code"], pause["outcome"]) == ("expired", "superseded", "A later command took its place.")
+    assert (pause["state"], pause["outcome_code"], pause["outcome"]) == ("expired", "superseded", "A later command took its place: Hold.")
     assert (hold["state"], hold["priority"], hold["outcome"]) == ("failed", "safety", "The UAV refused it.")
     german = client.get(f"/api/v1/uavs/{tern.pk}/commands", headers={"Accept-Language": "de"}).json()["results"]
-    assert german[1]["outcome"] == "Ein späterer Befehl trat an seine Stelle."
+    assert german[1]["outcome"] == "Ein späterer Befehl trat an seine Stelle: Anhalten."
 
 
 def test_a_command_that_is_sent_unheard_says_so_until_its_uav_is_heard(client: Client) -> None:
