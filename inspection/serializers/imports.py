@@ -13,8 +13,7 @@ from inspection.services.imports.uploads import PART_BYTES
 from inspection.services.proposals.reading import KINDS
 from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
 from workspace.api import strict_serializers as serializers
-from workspace.api.fields import FiniteFloatField
-from workspace.api.reasons import WhySerializer
+from workspace.api.fields import FiniteFloatField, WhySerializer
 from workspace.jobs.serializers import Declared
 from workspace.models import Job, JobState, User
 from workspace.reason_texts import column_text, reasons_of_column, why_text, with_message

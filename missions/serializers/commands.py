@@ -11,7 +11,7 @@ from missions.services.closing import MAX_REASON_LENGTH
 from missions.services.commands.batch import BATCH_KINDS, UavAnswer
 from missions.services.commands.steering import MAX_WAIT_S
 from workspace.api import strict_serializers as serializers
-from workspace.api.reasons import WhySerializer
+from workspace.api.fields import WhySerializer
 from workspace.reason_texts import column_text, reasons_of_column
 
 MAX_FLIGHTS = 100

@@ -6,7 +6,7 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.models import OfferState, ReplanOffer
-from workspace.api.reasons import WhySerializer
+from workspace.api.fields import WhySerializer
 from workspace.reason_texts import column_text, reasons_of_column, why_text
 
 REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is computed once and decided once

@@ -10,7 +10,7 @@ from missions.serializers.commands import MissionApprovalSerializer
 from planning.clearance.lost_link import LostLink, Trouble
 from planning.problem import TaskKind
 from workspace.api.external_data import AttributesField
-from workspace.api.reasons import WhySerializer
+from workspace.api.fields import WhySerializer
 from workspace.jobs.serializers import Declared
 
 

@@ -7,7 +7,7 @@ from missions.fields import ColoursField, PositionField
 from missions.models import LinkKind, MissionState, OfferState, TargetState
 from missions.serializers.commands import CommandSerializer
 from telemetry.serializers.alerts import AlertSerializer
-from workspace.api.reasons import WhySerializer
+from workspace.api.fields import WhySerializer
 from workspace.jobs.serializers import Declared
 
 

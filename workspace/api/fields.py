@@ -1,4 +1,4 @@
-"""Serializer fields for finite numbers."""
+"""Finite numbers in requests, and reasons in responses."""
 
 import math
 from typing import Any
@@ -19,3 +19,8 @@ def is_number(value: Any) -> bool:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return abs(value) < 1e300 and math.isfinite(value)
+
+
+class WhySerializer(serializers.Serializer):
+    code = serializers.CharField(help_text="for programs: stays the same; see operation/reasons.py")
+    params = serializers.DictField(help_text="what fills the sentence: names, numbers in the unit of the name's end, other reasons")

@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
-from workspace.api.reasons import WhySerializer
+from workspace.api.fields import WhySerializer
 from workspace.jobs.result_texts import result_with_texts
 from workspace.models import Job, JobState
 from workspace.reason_texts import column_text, reasons_of_column, with_message
