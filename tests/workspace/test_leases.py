@@ -3,10 +3,13 @@
 from datetime import timedelta
 
 import pytest
+from django.db import connection
 from django.db.models import F
 from django.db.models.functions import Now
 
+from missions.models import CommandKind
 from telemetry.models import UavWatch
+from tests.missions.commands.outbox import a_uav, claim, give
 from tests.missions.flights import fleet
 from workspace.leases import from_now, held_until_s, holder_name, is_free, is_free_for, release, renew, take
 
@@ -75,3 +78,15 @@ def test_a_holder_acts_for_less_long_than_its_lease() -> None:
 def test_a_name_holds_nothing_that_parts_it_from_the_run() -> None:
     assert holder_name("gate way/1") == "gate-way-1"
     assert holder_name(None) == holder_name("")
+
+
+def test_no_more_are_taken_than_asked_for_whatever_plan_the_database_makes() -> None:
+    """A subquery with a limit and locks may run once for each row of a nested loop, and then finds other rows each time."""
+    uavs = [a_uav(name) for name in ("Kite", "Tern", "Auk", "Owl")]
+    commands = [give(uavs[0], CommandKind.HOLD)]
+    with connection.cursor() as cursor:
+        cursor.execute("ANALYZE missions_uavcommand")  # from now on the database expects one row
+        commands += [give(uav, CommandKind.HOLD) for uav in uavs[1:]]
+        for kind in ("hashjoin", "mergejoin", "material", "memoize"):
+            cursor.execute(f"SET LOCAL enable_{kind} = off")
+    assert claim(*uavs, limit=2) == commands[:2]

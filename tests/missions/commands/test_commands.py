@@ -167,18 +167,6 @@ def test_the_most_urgent_is_taken_first_and_of_these_the_oldest() -> None:
     assert claim(*uavs) == []
 
 
-def test_no_more_are_taken_than_asked_for_whatever_plan_the_database_makes() -> None:
-    """A subquery with a limit and locks may run once for each row of a nested loop, and then finds other rows each time."""
-    uavs = [a_uav(name) for name in ("Kite", "Tern", "Auk", "Owl")]
-    commands = [give(uavs[0], CommandKind.HOLD)]
-    with connection.cursor() as cursor:
-        cursor.execute("ANALYZE missions_uavcommand")  # from now on the database expects one row
-        commands += [give(uav, CommandKind.HOLD) for uav in uavs[1:]]
-        for kind in ("hashjoin", "mergejoin", "material", "memoize"):
-            cursor.execute(f"SET LOCAL enable_{kind} = off")
-    assert claim(*uavs, limit=2) == commands[:2]
-
-
 def test_commands_to_uavs_that_are_not_asked_for_are_left_alone() -> None:
     kite, tern = a_uav("Kite"), a_uav("Tern")
     give(kite, CommandKind.HOLD)

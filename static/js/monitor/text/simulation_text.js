@@ -29,7 +29,7 @@ const BEHIND_S = 2; // of lost real time, from which on it is shown
  * @property {string} image name of an icon
  * @property {string} words
  * @property {boolean} [lasts] it is over after a time
- * @property {(vehicle: SimulatedVehicle, flown_s: number) => object} the request for a vehicle, for a duration in its own seconds
+ * @property {(vehicle: SimulatedVehicle, flown_s: number) => object} of returns the request for a vehicle, for a duration in its own seconds
  */
 
 /** Faults by the name of their button, with the request for a vehicle and a duration in its own seconds. */
