@@ -3,6 +3,7 @@
 from datetime import datetime
 from typing import Any, ClassVar
 
+from django.conf import settings
 from django.contrib.auth.password_validation import validate_password
 from django.utils import timezone
 from django.utils.translation import gettext as _
@@ -17,7 +18,6 @@ from workspace.models import (
     ApiToken,
     BrowserSession,
     Invitation,
-    Language,
     Role,
     SignInEntry,
     SignInOutcome,
@@ -55,7 +55,7 @@ class AccountChangeSerializer(serializers.Serializer):
     theme = serializers.ChoiceField(choices=Theme.choices, required=False)
     units = serializers.ChoiceField(choices=Units.choices, required=False)
     time_zone = serializers.CharField(max_length=64, allow_blank=True, required=False, help_text="IANA name; empty: the browser's")
-    language = serializers.ChoiceField(choices=Language.choices, required=False, allow_blank=True)
+    language = serializers.ChoiceField(choices=settings.LANGUAGES, required=False, allow_blank=True)
     single_keys = serializers.BooleanField(required=False)
 
     def validate_time_zone(self, value: str) -> str:

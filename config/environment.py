@@ -9,6 +9,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
+from django.utils.text import capfirst
+from django.utils.translation import get_language_info, to_language
+
 BACKENDS = {"console": "console", "file": "filebased", "memory": "locmem", "smtp": "smtp", "smtp+tls": "smtp", "smtp+ssl": "smtp"}
 PORTS = {"smtp": 25, "smtp+tls": 587, "smtp+ssl": 465}
 TIMEOUT_S = 10
@@ -54,6 +57,12 @@ def log_settings(environment: Mapping[str, str]) -> dict[str, Any]:
         "handlers": {"console": {"class": "logging.StreamHandler", "formatter": form}},
         "root": {"handlers": ["console"], "level": environment.get("SPANWISE_LOG_LEVEL", "INFO")},
     }
+
+
+def languages(locale: Path) -> list[tuple[str, str]]:
+    """Return the code of English and of each language with a directory in `locale`, with its own name for itself."""
+    codes = ["en", *sorted(to_language(path.name) for path in locale.iterdir() if path.is_dir())]
+    return [(code, capfirst(str(get_language_info(code)["name_local"]))) for code in codes]
 
 
 class SecretUnreadable(Exception):

@@ -8,7 +8,7 @@ from typing import Any
 
 import dj_database_url
 
-from config.environment import entries, flag, log_settings, mail_settings, mebibytes, number, secret
+from config.environment import entries, flag, languages, log_settings, mail_settings, mebibytes, number, secret
 from config.openapi_settings import openapi_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from inspection.network.rules import FlownHeights, LinkingRules
@@ -182,8 +182,8 @@ globals().update(mail_settings(secret("SPANWISE_EMAIL_URL", "console://")))
 DEFAULT_FROM_EMAIL = os.environ.get("SPANWISE_EMAIL_FROM", "Spanwise <spanwise@localhost>")
 
 LANGUAGE_CODE = "en-gb"
-LANGUAGES = [("en", "English"), ("de", "Deutsch")]
 LOCALE_PATHS = [BASE_DIR / "locale"]
+LANGUAGES = languages(LOCALE_PATHS[0])
 TIME_ZONE = "UTC"
 USE_I18N = True
 USE_TZ = True

@@ -1,10 +1,12 @@
-"""Every text of the program is translatable, and German has all of them."""
+"""Every text of the program is translatable, and each language has all of them."""
 
 import re
 from pathlib import Path
 
 import pytest
+from django.conf import settings
 
+from config.environment import languages
 from scripts.development import texts
 
 PLACEHOLDER = re.compile(r"\{(\w+)\}|%\((\w+)\)[sd]")
@@ -18,42 +20,47 @@ SCRIPT_LITERAL = re.compile(r'(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<quoted>"(?:[^"
 SENTENCE = re.compile(r"^\W*[A-Z][a-z]* [a-z]{2,}|[a-z]{2,} [a-z]{2,} [a-z]+[.?!]$|^\W*[A-Z][a-z]+[.?!]$")
 FOR_DEVELOPERS = re.compile(r"(?:Error|RegExp)\(\s*$")
 SERVER_WORDS = {"${operator} railway", " It is locked to others: the run is left out as a whole."}  # compared with what the server says
-OWN_NAMES = {"Spanwise", "Spanwise administration", "English", "Deutsch", "UTC", "CSV", "GeoJSON", "GPX", "KML"}
-
-
-def _forms(text: str | list[str] | tuple[str, ...]) -> list[str]:
-    return [text] if isinstance(text, str) else list(text)
+OWN_NAMES = {"Spanwise", "Spanwise administration", "English", "UTC", "CSV", "GeoJSON", "GPX", "KML"}
 
 
 def _placeholders(text: str) -> set[str]:
     return {braces or percent for braces, percent in PLACEHOLDER.findall(text)}
 
 
-@pytest.mark.parametrize("language", texts.LANGUAGES)
-def test_every_text_of_the_pages_scripts_is_translated(language: str) -> None:
-    assert texts.missing_in_scripts(language) == []
+@pytest.mark.parametrize("language", texts.languages())
+def test_every_text_of_the_program_is_translated(language: str) -> None:
+    assert texts.missing(language) == []
 
 
-@pytest.mark.parametrize("language", texts.LANGUAGES)
-def test_every_text_of_the_server_is_translated(language: str) -> None:
-    assert texts.missing_on_server(language) == []
-
-
-@pytest.mark.parametrize("language", texts.LANGUAGES)
+@pytest.mark.parametrize("language", texts.languages())
 def test_no_translation_is_left_of_a_text_that_is_gone(language: str) -> None:
-    assert texts.left_over_in_scripts(language) == []
-    assert texts.left_over_on_server(language) == []
+    assert texts.left_over(language) == []
 
 
-@pytest.mark.parametrize("language", texts.LANGUAGES)
+@pytest.mark.parametrize("language", texts.languages())
 def test_a_translation_has_the_placeholders_of_its_text(language: str) -> None:
-    translated = list(texts.script_catalogue(language).items())
-    translated += [(_forms(message.id)[-1], message.string) for message in texts.catalogue(language) if message.id]
-    wrong = [
-        text for text, forms in translated if not all(_placeholders(form) <= _placeholders(text) | {"count"} for form in _forms(forms))
+    translated = [
+        (texts.forms(message.id)[-1], message.string) for domain in texts.DOMAINS for message in texts.translations(language, domain)
     ]
-    wrong += [text for text, forms in translated if _placeholders(text) - _placeholders(_forms(forms)[-1]) - {"count"}]
+    wrong = [
+        text for text, forms in translated if not all(_placeholders(form) <= _placeholders(text) | {"count"} for form in texts.forms(forms))
+    ]
+    wrong += [text for text, forms in translated if _placeholders(text) - _placeholders(texts.forms(forms)[-1]) - {"count"}]
     assert wrong == []
+
+
+@pytest.mark.parametrize(("language", "singular"), [("de", {1}), ("es", {1}), ("fr", {0, 1})])
+def test_a_compiled_catalogue_has_the_plural_forms_of_its_language(language: str, singular: set[int]) -> None:
+    module = texts.module_of(texts.catalogue(language, "djangojs"))
+    rule = re.search(r"Number\((.*)\);", module)
+    assert rule is not None
+    assert {n for n in range(5) if not eval(rule[1], {}, {"n": n})} == singular  # noqa: S307 - our own file, a comparison of numbers
+    assert '"Done|job": ' in module, "a context is part of the key"
+
+
+def test_a_language_is_a_directory_of_locale() -> None:
+    assert languages(texts.LOCALE) == [("en", "English"), ("de", "Deutsch"), ("es", "Español"), ("fr", "Français")]
+    assert languages(texts.LOCALE) == settings.LANGUAGES
 
 
 def _templates() -> list[Path]:
@@ -68,8 +75,8 @@ def test_a_template_has_no_text_that_cannot_be_translated(template: Path) -> Non
 
 
 def _untranslated(source: str) -> list[str]:
-    """Literals of a script that read like a sentence and are no text of t(), tn() or countText()."""
-    known = {form for text in texts.texts_of_script(source) for form in _forms(text)}
+    """Literals of a script that read like a sentence and are no text of t() or tn()."""
+    known = {form for text in texts.texts_of_script(source) for form in texts.forms(text)}
     found = []
     for match in SCRIPT_LITERAL.finditer(source):
         literal = (match["quoted"] or "")[1:-1]
@@ -93,9 +100,10 @@ def test_untranslated_sentences_of_a_script_are_found() -> None:
 
 
 def test_texts_are_found_in_scripts_templates_and_modules() -> None:
-    assert list(texts.texts_of_script('t("One"); tn(f(a, b), "{count} x", "{count} xs"); countText(n, "y");')) == [
-        "One", ("{count} x", "{count} xs"), ("{count} y", "{count} ys"),
-    ]  # fmt: skip
+    assert list(texts.texts_of_script('t("One"); f(tn(f(a, b), "{count} x", "{count} xs"));')) == [
+        "One",
+        ("{count} x", "{count} xs"),
+    ]
     assert list(texts.texts_of_module('_("One"); ngettext("%(count)s a", "%(count)s b", n); other("Two")')) == [
         "One",
         ("%(count)s a", "%(count)s b"),

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.conf import settings
 from django.contrib.auth.forms import BaseUserCreationForm, UserCreationForm
 from django.contrib.auth.mixins import UserPassesTestMixin
 from django.db import IntegrityError, transaction
@@ -31,6 +32,7 @@ class AccountPage(SignedInPage):
             "has_second_factor": has_one,
             "second_factor_is_required": is_required_of(user),
             "codes_left": recovery_codes_left(user) if has_one else 0,
+            "languages": settings.LANGUAGES,
             "token_scopes": [(scope.value, scope.label) for scope in SCOPES_OF_ROLE[user.role]],
         }
 

@@ -44,7 +44,7 @@ VOLTAGE_NOT_STATED = gettext_noop("voltage not stated")
 PLACED = gettext_noop("%(kind)s %(place)s of %(places)s")
 RAILWAY_OF = gettext_noop("%(operator)s railway")
 NAMING = ("kind", "subtype", "place_on_line", "places_on_line", "osm_type", "osm_id")
-NUMBERED = re.compile(r"(?P<word>\w+) (?P<osm>[nwr])?(?P<number>\d{1,18})", re.IGNORECASE)
+NUMBERED = re.compile(r"(?P<word>\w[\w ]*?) (?P<osm>[nwr])?(?P<number>\d{1,18})", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def _languages() -> list[tuple[dict[str, str], re.Pattern[str]]]:
         with translation.override(code):
             words = {_(noun).lower(): noun for noun in {*KIND_WORDS.values(), *WORDS.values()}}
             stated = _(PLACED) % {"kind": "{kind}", "place": "{place}", "places": "{places}"}
-        pattern = re.escape(stated).replace(r"\{kind\}", r"(?P<word>\w+)")
+        pattern = re.escape(stated).replace(r"\{kind\}", r"(?P<word>\w[\w ]*?)")
         pattern = pattern.replace(r"\{place\}", r"(?P<place>\d{1,6})").replace(r"\{places\}", r"(?P<places>\d{1,6})")
         languages.append((words, re.compile(pattern, re.IGNORECASE)))
     return languages

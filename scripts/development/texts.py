@@ -1,92 +1,56 @@
-"""Translations of pages and responses: find texts, and compile .po files to the .mo files that the program reads.
+"""Texts of pages and responses in other languages: gettext catalogues, one directory in locale/ for each language.
 
-python -m scripts.development.texts compile     make the .mo files; ./run and ./check do it themselves
+python -m scripts.development.texts compile     make what the program and the pages read; ./run and ./check do it themselves
 python -m scripts.development.texts update      add new texts of the program to the .po files, and remove obsolete ones
-python -m scripts.development.texts missing     list texts without a translation, those of the pages' scripts included
+python -m scripts.development.texts missing     list texts without a translation
 """
 
 import ast
 import io
 import json
-import os
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
-import django
-from babel.messages.catalog import Catalog
+from babel.core import Locale
+from babel.messages.catalog import Catalog, Message
+from babel.messages.extract import extract_javascript
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
-from django.template import Engine, Template
-from django.template.base import Node
-from django.templatetags.i18n import BlockTranslateNode, TranslateNode
+from django.utils.translation import to_language
+from django.utils.translation.template import templatize
 
 ROOT = Path(__file__).resolve().parents[2]
-LANGUAGES = ("de",)
 LOCALE = ROOT / "locale"
 TEMPLATES = ROOT / "templates"
 SCRIPTS = ROOT / "static" / "js"
+COMPILED_SCRIPTS = SCRIPTS / "locale"
 APPS = ("operation", "config", "workspace", "accounts", "inspection", "planning", "mavlink", "missions", "telemetry", "simulation")
 
-Text = str | tuple[str, str]  # the second form has a plural
+Text = str | tuple[str, str]  # the second form has a plural; in scripts "|hint" names the meaning of a word, the context in a .po file
 
-_STRING = r'"((?:[^"\\\n]|\\.)*)"'
-_SINGLE = re.compile(rf"(?<![\w.$])t\(\s*{_STRING}")
-_PLURAL = re.compile(rf"(?<![\w.$])tn\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*?,\s*{_STRING},\s*{_STRING}")
-_COUNTED = re.compile(rf"(?<![\w.$])countText\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*?,\s*{_STRING}(?:,\s*{_STRING})?\)")
-
-
-def po_file(language: str) -> Path:
-    return LOCALE / language / "LC_MESSAGES" / "django.po"
-
-
-def catalogue(language: str) -> Catalog:
-    with po_file(language).open("rb") as file:
-        return read_po(file, locale=language)
-
-
-def compile_all() -> None:
-    for language in LANGUAGES:
-        with po_file(language).with_suffix(".mo").open("wb") as file:
-            write_mo(file, catalogue(language))
+OF_SERVER = ("_", "gettext", "gettext_lazy", "gettext_noop", "ngettext", "ngettext_lazy", "ngettext_noop")
+OF_SCRIPTS = ("t", "tn")
+CALL_IN_SCRIPT = re.compile(r"(?<![\w.$])tn?\(")
+UNSTABLE_HEADER = re.compile(
+    r'^"(?:POT-Creation-Date|PO-Revision-Date|Last-Translator|Language-Team|Generated-By|Report-Msgid-Bugs-To): .*\n', re.M
+)
 
 
 # --- texts of the program -------------------------------------------------------------------------------------------------------
 
 
 def texts_of_templates() -> Iterator[Text]:
-    engine = Engine.get_default()
     for path in sorted(TEMPLATES.rglob("*.html")) + sorted(TEMPLATES.rglob("*.txt")):
-        yield from texts_of_template(path.read_text(), engine)
+        yield from texts_of_template(path.read_text())
 
 
-def texts_of_template(source: str, engine: Engine) -> Iterator[Text]:
-    yield from re.findall(r'\b_\("([^"]+)"\)', source)
-    for node in _nodes(Template(source, engine=engine).nodelist):
-        if isinstance(node, TranslateNode):
-            literal = node.filter_expression.var.literal
-            if isinstance(literal, str):
-                yield literal
-        elif isinstance(node, BlockTranslateNode):
-            singular, _ = node.render_token_list(node.singular)
-            if node.plural:
-                yield _trimmed(node, singular), _trimmed(node, node.render_token_list(node.plural)[0])
-            else:
-                yield _trimmed(node, singular)
-
-
-def _trimmed(node: BlockTranslateNode, text: str) -> str:
-    return " ".join(line.strip() for line in text.splitlines() if line.strip()) if node.trimmed else text
-
-
-def _nodes(nodes: list[Node]) -> Iterator[Node]:
-    for node in nodes:
-        yield node
-        for name in node.child_nodelists:
-            yield from _nodes(getattr(node, name, None) or [])
-        for _, branch in getattr(node, "conditions_nodelists", []):
-            yield from _nodes(branch)
+def texts_of_template(source: str) -> Iterator[Text]:
+    """Django makes calls of gettext from its tags, between words that Babel's extractor for JavaScript passes over."""
+    for _, function, arguments, _ in extract_javascript(io.BytesIO(templatize(source).encode()), OF_SERVER, (), {"jsx": False}):
+        yield from _text(function, arguments)
 
 
 def texts_of_python() -> Iterator[Text]:
@@ -97,121 +61,154 @@ def texts_of_python() -> Iterator[Text]:
 
 
 def texts_of_module(source: str) -> Iterator[Text]:
+    """Babel's extractor for Python passes over calls in arguments of other calls, and takes keys of mappings for texts."""
     for call in ast.walk(ast.parse(source)):
-        if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
-            continue
-        words = [argument.value for argument in call.args if isinstance(argument, ast.Constant) and isinstance(argument.value, str)]
-        if call.func.id in {"_", "gettext", "gettext_lazy", "gettext_noop"} and words:
-            yield words[0]
-        elif call.func.id in {"ngettext", "ngettext_lazy", "ngettext_noop"} and len(words) > 1:
-            yield words[0], words[1]
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in OF_SERVER:
+            yield from _text(call.func.id, [argument.value for argument in call.args if isinstance(argument, ast.Constant)])
 
 
 def texts_of_scripts() -> Iterator[Text]:
     for path in sorted(SCRIPTS.rglob("*.js")):
-        if path.name != "text.js" and "locale" not in path.relative_to(SCRIPTS).parts:
+        if path.name != "text.js" and COMPILED_SCRIPTS not in path.parents:
             yield from texts_of_script(path.read_text())
 
 
 def texts_of_script(source: str) -> Iterator[Text]:
+    """Babel's extractor passes over calls in arguments of other calls, so each call is extracted by itself."""
     code = re.sub(r"/\*.*?\*/", "", source, flags=re.S)
-    for match in _SINGLE.finditer(code):
-        yield json.loads(f'"{match[1]}"')
-    for match in _PLURAL.finditer(code):
-        yield json.loads(f'"{match[1]}"'), json.loads(f'"{match[2]}"')
-    for match in _COUNTED.finditer(code):
-        yield f"{{count}} {match[1]}", f"{{count}} {match[2] or match[1] + 's'}"
+    for match in CALL_IN_SCRIPT.finditer(code):
+        call = io.BytesIO(code[match.start() :].encode())
+        for _, function, arguments, _ in extract_javascript(call, OF_SCRIPTS, (), {"jsx": False}):
+            yield from _text(function, arguments)
+            break
+
+
+def _text(function: str, arguments: object) -> Iterator[Text]:
+    """Return the text of a call: its first literal, or the first two where it has a plural."""
+    literals = [argument for argument in _several(arguments) if isinstance(argument, str)]
+    if function in ("tn", "ngettext", "ngettext_lazy", "ngettext_noop"):
+        if len(literals) > 1:
+            yield literals[0], literals[1]
+    elif literals:
+        yield literals[0]
+
+
+def _several(one_or_more: object) -> list[Any]:
+    return list(one_or_more) if isinstance(one_or_more, list | tuple) else [one_or_more] if one_or_more else []
+
+
+DOMAINS: dict[str, Callable[[], Iterator[Text]]] = {
+    "django": lambda: (text for source in (texts_of_templates, texts_of_python) for text in source()),
+    "djangojs": texts_of_scripts,
+}
+
+
+def program_texts(domain: str) -> Catalog:
+    """Return the texts of the program, untranslated."""
+    found = Catalog(fuzzy=False)
+    for text in DOMAINS[domain]():
+        singular, _, context = (text if isinstance(text, str) else text[0]).partition("|" if domain == "djangojs" else "\0")
+        found.add(singular if isinstance(text, str) else (singular, text[1]), context=context or None)
+    return found
 
 
 # --- catalogues -----------------------------------------------------------------------------------------------------------------
 
 
-def server_texts() -> list[Text]:
-    return list(dict.fromkeys([*texts_of_templates(), *texts_of_python()]))
+def languages() -> list[str]:
+    """Return the names of the directories in locale/, such as "de" or "pt_BR"."""
+    return sorted(path.name for path in LOCALE.iterdir() if path.is_dir())
 
 
-def script_texts() -> list[Text]:
-    return list(dict.fromkeys(texts_of_scripts()))
+def po_file(language: str, domain: str) -> Path:
+    return LOCALE / language / "LC_MESSAGES" / f"{domain}.po"
 
 
-def script_catalogue(language: str) -> dict[str, str | list[str]]:
-    """Return the catalogue of a language, a module with one object, parsed without running it."""
-    found: dict[str, str | list[str]] = {}
-    for path in sorted((SCRIPTS / "locale" / language).glob("*.js")):
-        body = path.read_text().split("export default", 1)[1].strip().rstrip(";")
-        body = re.sub(r"^(\s*)([A-Za-z_]\w*):", r'\1"\2":', body, flags=re.M)
-        found |= json.loads(re.sub(r",(\s*[}\]])", r"\1", body))
+def catalogue(language: str, domain: str) -> Catalog:
+    path = po_file(language, domain)
+    if not path.exists():
+        heading = f"# {Locale.parse(language).english_name} texts of Spanwise's {'pages' if domain == 'djangojs' else 'server'}."
+        return Catalog(locale=language, project="Spanwise", version="1", header_comment=heading, charset="utf-8", fuzzy=False)
+    with path.open("rb") as file:
+        return read_po(file, locale=language)
+
+
+def translations(language: str, domain: str) -> list[Message]:
+    return [message for message in catalogue(language, domain) if message.id]
+
+
+def forms(text: object) -> list[str]:
+    """Return the one form of a text, or all of one with a plural."""
+    return _several(text) or [""]
+
+
+def missing(language: str) -> list[str]:
+    """Return the texts of the program without a translation."""
+    found = []
+    for domain in DOMAINS:
+        known = catalogue(language, domain)
+        for wanted in program_texts(domain):
+            message = known.get(forms(wanted.id)[0], wanted.context)
+            is_same = message is not None and isinstance(message.id, str) == isinstance(wanted.id, str)
+            if wanted.id and not (message and is_same and not message.fuzzy and all(forms(message.string))):
+                found.append(_key(wanted))
     return found
 
 
-def missing_in_scripts(language: str) -> list[Text]:
-    known = script_catalogue(language)
-    single = [text for text in script_texts() if isinstance(text, str)]
-    counted = [text for text in script_texts() if not isinstance(text, str)]
-    return [text for text in single if not isinstance(known.get(text), str)] + [
-        text for text in counted if not isinstance(known.get(text[0]), list)
-    ]
+def left_over(language: str) -> list[str]:
+    """Return the texts with a translation that are no longer in the program."""
+    found = []
+    for domain in DOMAINS:
+        used = program_texts(domain)
+        found += [_key(message) for message in translations(language, domain) if used.get(forms(message.id)[0], message.context) is None]
+    return found
 
 
-def left_over_in_scripts(language: str) -> list[str]:
-    used = {text if isinstance(text, str) else text[0] for text in script_texts()}
-    return [text for text in script_catalogue(language) if text not in used]
-
-
-def missing_on_server(language: str) -> list[Text]:
-    known = catalogue(language)
-    found = {message.id if isinstance(message.id, str) else tuple(message.id): message for message in known if message.id}
-    return [text for text in server_texts() if text not in found or not all(_strings(found[text].string)) or found[text].fuzzy]
-
-
-def left_over_on_server(language: str) -> list[Text]:
-    used = set(server_texts())
-    ids = [message.id for message in catalogue(language) if message.id]
-    texts: list[Text] = [text if isinstance(text, str) else (text[0], text[1]) for text in ids]
-    return [text for text in texts if text not in used]
-
-
-def _strings(string: object) -> list[str]:
-    return [string] if isinstance(string, str) else list(string) if isinstance(string, list | tuple) else [""]
+def _key(message: Message) -> str:
+    """Return how scripts name a text: "Operator|role"."""
+    return forms(message.id)[0] + (f"|{message.context}" if message.context else "")
 
 
 def update() -> None:
-    for language in LANGUAGES:
-        old = catalogue(language)
-        new = Catalog(
-            locale=language,
-            project="Spanwise",
-            version="1",
-            header_comment="# German texts of Spanwise's server.",
-            charset="utf-8",
-            fuzzy=False,
-        )
-        for text in sorted(server_texts(), key=str):
-            singular = text if isinstance(text, str) else text[0]
-            known = old.get(singular)
-            is_same = known is not None and isinstance(known.id, str) == isinstance(text, str)
-            new.add(text, known.string if known is not None and is_same else None)
-        written = io.BytesIO()
-        write_po(written, new, width=120, omit_header=False)
-        kept = [
-            line
-            for line in written.getvalue().decode().splitlines()
-            if not re.match(r'"(POT-Creation-Date|PO-Revision-Date|Last-Translator|Language-Team|Generated-By|Report-Msgid-Bugs-To):', line)
-        ]
-        po_file(language).write_text("\n".join(kept) + "\n")
+    for language in languages():
+        for domain in DOMAINS:
+            kept = catalogue(language, domain)
+            kept.update(program_texts(domain), no_fuzzy_matching=True)
+            written = io.BytesIO()
+            write_po(written, kept, width=120, sort_output=True, ignore_obsolete=True)
+            po_file(language, domain).parent.mkdir(exist_ok=True)
+            po_file(language, domain).write_text(UNSTABLE_HEADER.sub("", written.getvalue().decode()))
+
+
+# --- compiled -------------------------------------------------------------------------------------------------------------------
+
+
+def compile_all() -> None:
+    COMPILED_SCRIPTS.mkdir(exist_ok=True)
+    for language in languages():
+        with po_file(language, "django").with_suffix(".mo").open("wb") as file:
+            write_mo(file, catalogue(language, "django"))
+        (COMPILED_SCRIPTS / f"{to_language(language)}.js").write_text(module_of(catalogue(language, "djangojs")))
+
+
+def module_of(texts: Catalog) -> str:
+    """Return a catalogue as the module that text.js loads. A rule for plurals means the same in C and in JavaScript."""
+    translated = {_key(message): message.string for message in texts if message.id and all(forms(message.string)) and not message.fuzzy}
+    return (
+        "/** Compiled by scripts/development/texts.py. */\n"
+        f"export const form = (/** @type {{number}} */ n) => Number({texts.plural_expr});\n"
+        f"export default {json.dumps(translated, ensure_ascii=False, indent=0)};\n"
+    )
 
 
 def main(arguments: list[str]) -> int:
-    if arguments == ["compile"]:
-        compile_all()
-        return 0
-    os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
-    django.setup()
     match arguments:
+        case ["compile"]:
+            compile_all()
         case ["update"]:
             update()
         case ["missing"]:
-            found = {language: [*missing_on_server(language), *missing_in_scripts(language)] for language in LANGUAGES}
+            found = {language: missing(language) for language in languages()}
             print(json.dumps(found, ensure_ascii=False, indent=1))
             return int(any(found.values()))
         case _:

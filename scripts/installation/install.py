@@ -92,14 +92,24 @@ def steps_to_do(purpose: str, base_python: str) -> list[Step]:
         steps.append(Step("Planners' core", 70.0, _compile_core, steps_before))
     elif subprocess.run([_python(), "-m", "scripts.compile_core", "--check"], cwd=PROJECT_DIR, check=False).returncode:
         steps.append(Step("Planners' core", 70.0, _compile_core))
-    texts = (PROJECT_DIR / "locale").glob("*/LC_MESSAGES/django.po")
-    if any(not text.with_suffix(".mo").exists() or text.with_suffix(".mo").stat().st_mtime < text.stat().st_mtime for text in texts):
+    if not _texts_are_compiled():
         steps.append(
             Step(
                 "Texts in other languages", 1.0, lambda step: _call([_python(), "-m", "scripts.development.texts", "compile"]), [libraries]
             )
         )
     return steps
+
+
+def _texts_are_compiled() -> bool:
+    """Whether scripts/development/texts.py has compiled the texts of server and pages since they last changed."""
+    for directory in (PROJECT_DIR / "locale").iterdir():
+        messages, code = directory / "LC_MESSAGES", directory.name.lower().replace("_", "-")
+        compiled = {"django.po": messages / "django.mo", "djangojs.po": PROJECT_DIR / "static" / "js" / "locale" / f"{code}.js"}
+        for source, target in compiled.items():
+            if not target.exists() or target.stat().st_mtime < (messages / source).stat().st_mtime:
+                return False
+    return True
 
 
 def _python() -> str:

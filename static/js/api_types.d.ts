@@ -40,7 +40,8 @@ export interface components {
             units?: components["schemas"]["Units"];
             /** @description IANA name; empty: the browser's */
             time_zone?: string;
-            language?: components["schemas"]["Language"] | components["schemas"]["BlankEnum"];
+            /** @description one of settings.LANGUAGES; empty: the browser's */
+            language?: string;
             /** @description shortcuts of one key on the pages */
             single_keys?: boolean;
             /** Format: date-time */
@@ -2269,12 +2270,13 @@ export interface components {
             facts: string[];
         };
         /**
-         * @description * `` - As the browser
-         *     * `en` - English
+         * @description * `en` - English
          *     * `de` - Deutsch
+         *     * `es` - Español
+         *     * `fr` - Français
          * @enum {string}
          */
-        Language: "en" | "de";
+        LanguageEnum: "en" | "de" | "es" | "fr";
         /** @description The plan that the current one replaced, for comparison. */
         LastPlan: {
             /** Format: date-time */
@@ -3466,7 +3468,7 @@ export interface components {
             units?: components["schemas"]["Units"];
             /** @description IANA name; empty: the browser's */
             time_zone?: string;
-            language?: components["schemas"]["Language"] | components["schemas"]["BlankEnum"];
+            language?: components["schemas"]["LanguageEnum"] | components["schemas"]["BlankEnum"];
             single_keys?: boolean;
         };
         /** @description An asset that a user draws or corrects. Lengths in metres, voltages in volts. */
@@ -8025,7 +8027,7 @@ export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
 export type LandingHere = components['schemas']['LandingHere'];
-export type Language = components['schemas']['Language'];
+export type LanguageEnum = components['schemas']['LanguageEnum'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];
 export type LastStop = components['schemas']['LastStop'];

@@ -1,14 +1,16 @@
-/** Texts in the language of the page. The English text in the code is the key; other languages are catalogues beside it. */
+/** Texts in the language of the page. The English text in the code is the key; locale/<language>/LC_MESSAGES/djangojs.po has the others. */
 
 /** @typedef {Record<string, string | number | null | undefined>} Values of the places in braces */
+/** @typedef {Record<string, string | string[]>} Texts or their forms, under the English text or its singular */
 
-/** @type {Record<string, () => Promise<{ default: Record<string, string | string[]> }>>} */
-const CATALOGUES = { de: () => import("./locale/de.js") };
+const language = globalThis.document?.documentElement.lang || "en";
+/** How Intl writes dates and figures; English is British. */
+export const locale = language === "en" ? "en-GB" : language;
 
-export const language = globalThis.document?.documentElement.lang?.split("-")[0] || "en";
-/** @type {Record<string, any>} a text, or its two forms under the English singular */
-const catalogue = CATALOGUES[language] ? (await CATALOGUES[language]()).default : {};
-const plural = new Intl.PluralRules(language);
+/** @type {string | undefined} of the compiled catalogue, from {% catalogue %} in the page's template; English has none */
+const address = globalThis.document?.querySelector?.('meta[name="catalogue"]')?.getAttribute("content");
+/** @type {{ default: Texts, form: (count: number) => number }} */
+const catalogue = address ? await import(address) : { default: {}, form: () => 0 };
 
 /** @param {string} text @param {Values} values */
 function filled(text, values) {
@@ -23,11 +25,11 @@ function filled(text, values) {
  * @returns {string}
  */
 export function t(text, values = {}) {
-  return filled(catalogue[text] ?? text.replace(/\|\w+$/, ""), values);
+  return filled(String(catalogue.default[text] ?? text.replace(/\|\w+$/, "")), values);
 }
 
 /**
- * tn(3, "{count} target", "{count} targets"): the catalogue holds [one, other] under the English singular.
+ * tn(3, "{count} target", "{count} targets"): in as many forms as the language has.
  *
  * @param {number} count
  * @param {string} one
@@ -36,14 +38,6 @@ export function t(text, values = {}) {
  * @returns {string}
  */
 export function tn(count, one, other, values = {}) {
-  const forms = catalogue[one] ?? [one, other];
-  return filled(plural.select(count) === "one" ? forms[0] : forms[1], {
-    count: count.toLocaleString(localeOf(language)),
-    ...values,
-  });
-}
-
-/** How dates and figures are written. @param {string} name of a language */
-export function localeOf(name) {
-  return name === "de" ? "de-DE" : "en-GB";
+  const text = catalogue.default[one]?.[catalogue.form(count)] ?? (count === 1 ? one : other);
+  return filled(text, { count: count.toLocaleString(locale), ...values });
 }

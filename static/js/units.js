@@ -3,14 +3,13 @@
  * A no-break space stands before each unit, minus is −. Stored and sent values stay metric and UTC.
  */
 
-import { language, localeOf, t, tn } from "./text.js";
+import { locale, t } from "./text.js";
 
 const SPACE = "\u00a0";
 const FOOT_M = 0.3048; // international foot
 const MILE_M = 1609.344; // international mile
 const MPH_MPS = 0.44704;
 const ACRE_M2 = 4046.8564224;
-const LOCALE = localeOf(language);
 
 const preferences = globalThis.document?.documentElement.dataset ?? {};
 export const isImperial = preferences.units === "imperial";
@@ -19,7 +18,7 @@ const zone = preferences.timeZone ? { timeZone: preferences.timeZone } : {};
 /** @param {number} value @param {number} [digits] after the decimal sign */
 function grouped(value, digits = 0) {
   return value
-    .toLocaleString(LOCALE, { minimumFractionDigits: digits, maximumFractionDigits: digits })
+    .toLocaleString(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits })
     .replace("-", "−");
 }
 
@@ -161,28 +160,23 @@ export function positionText([longitude, latitude]) {
   return `${Math.abs(latitude).toFixed(5)}° ${north}, ${Math.abs(longitude).toFixed(5)}° ${east}`;
 }
 
-/** countText(3, "target") → "3 targets". The catalogue holds the noun as [one, other]. @param {number} count @param {string} singular @param {string} [plural] */
-export function countText(count, singular, plural = `${singular}s`) {
-  return tn(count, `{count} ${singular}`, `{count} ${plural}`);
-}
-
 /** @param {Date} date */
 const partsOf = (date) =>
   new Intl.DateTimeFormat("en-CA", { ...zone, year: "numeric", month: "2-digit", day: "2-digit" }).format(date);
 
 /** @param {string | number} iso or milliseconds since 1970 */
 export function clockText(iso) {
-  return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit" });
+  return new Date(iso).toLocaleTimeString(locale, { ...zone, hour: "2-digit", minute: "2-digit" });
 }
 
 /** With seconds: live pages and logs alone. @param {string | number} iso or milliseconds since 1970 */
 export function exactClockText(iso) {
-  return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit", second: "2-digit" });
+  return new Date(iso).toLocaleTimeString(locale, { ...zone, hour: "2-digit", minute: "2-digit", second: "2-digit" });
 }
 
 /** "10 Sep 2026". @param {string | number} iso or milliseconds since 1970 */
 export function dateText(iso) {
-  return new Date(iso).toLocaleDateString(LOCALE, { ...zone, day: "numeric", month: "short", year: "numeric" });
+  return new Date(iso).toLocaleDateString(locale, { ...zone, day: "numeric", month: "short", year: "numeric" });
 }
 
 /** "now", "today, 11:40", "yesterday, 09:12", "10 Sep", "10 Sep 2025". @param {string} iso @param {Date} [now] */
@@ -201,7 +195,7 @@ export function dayText(iso, now = new Date()) {
   /** @type {Intl.DateTimeFormatOptions} */
   const parts = { ...zone, day: "numeric", month: "short" };
   if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
-  return then.toLocaleDateString(LOCALE, parts);
+  return then.toLocaleDateString(locale, parts);
 }
 
 /** "21 November", with the year if it is not the present one. @param {string} iso @param {Date} [now] */
@@ -210,12 +204,12 @@ export function longDayText(iso, now = new Date()) {
   /** @type {Intl.DateTimeFormatOptions} */
   const parts = { ...zone, day: "numeric", month: "long" };
   if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
-  return then.toLocaleDateString(LOCALE, parts);
+  return then.toLocaleDateString(locale, parts);
 }
 
 /** Day, time and the zone's name in full: for tooltips. @param {string} iso */
 export function exactText(iso) {
-  return new Date(iso).toLocaleString(LOCALE, { ...zone, dateStyle: "medium", timeStyle: "long" });
+  return new Date(iso).toLocaleString(locale, { ...zone, dateStyle: "medium", timeStyle: "long" });
 }
 
 /** "+12:05", "+1:02:05": time since a departure that has no date. @param {number} seconds */

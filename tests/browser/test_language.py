@@ -1,4 +1,4 @@
-"""The program in German: no English is left on any page, for the eye and for a screen reader."""
+"""The program in other languages: no English is left on any page, for the eye and for a screen reader."""
 
 import re
 from collections.abc import Callable
@@ -40,16 +40,14 @@ ENGLISH = re.compile(
 PLACEHOLDER = re.compile(r"\{\w+\}|%\(\w+\)[sd]")
 
 
-def _patterns() -> re.Pattern[str]:
-    """All texts in English whose German is another one; what is put in may be anything."""
+def _patterns(language: str) -> re.Pattern[str]:
+    """All texts in English whose translation is another one; what is put in may be anything."""
     pairs: list[tuple[str, str]] = []
-    for text, german in texts.script_catalogue("de").items():
-        forms = [german] if isinstance(german, str) else german
-        pairs += [(text, form) for form in forms]
-    for message in texts.catalogue("de"):
-        if isinstance(message.id, str) and message.id:
-            pairs.append((message.id, str(message.string)))
-    english = {text for text, german in pairs if text != german} - {german for _, german in pairs}
+    for domain in texts.DOMAINS:
+        for message in texts.translations(language, domain):
+            english_forms, own_forms = texts.forms(message.id), texts.forms(message.string)
+            pairs += [(english_forms[0], form) for form in (own_forms if domain == "djangojs" else own_forms[:1])]
+    english = {text for text, own in pairs if text != own} - {own for _, own in pairs}
     written = {
         text for text in english if len(re.findall(r"[A-Za-z]", PLACEHOLDER.sub("", text))) >= (1 if not PLACEHOLDER.search(text) else 8)
     }
@@ -59,8 +57,9 @@ def _patterns() -> re.Pattern[str]:
 class Reader:
     """Reads pages aloud and keeps what is English."""
 
-    def __init__(self) -> None:
-        self.english = _patterns()
+    def __init__(self, language: str = "de") -> None:
+        self.language = language
+        self.english = _patterns(language)
         self.found: dict[str, list[str]] = {}
 
     def reads(self, page: Page, what: str) -> None:
@@ -72,7 +71,7 @@ class Reader:
         page.goto(path)
         if page.locator("script[type=module]").count():
             page.locator("html[data-loaded]").wait_for(state="attached")
-        expect(page.locator("html")).to_have_attribute("lang", "de")
+        expect(page.locator("html")).to_have_attribute("lang", self.language)
         self.reads(page, path)
 
 
@@ -124,6 +123,26 @@ def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor, pictur
     page.keyboard.press("Escape")
     page.locator("#open-layers").click()
     reader.reads(page, "the layers")
+    assert reader.found == {}
+
+
+@pytest.mark.parametrize(("language", "sign_in"), [("es", "Iniciar sesión"), ("fr", "Se connecter")])
+def test_main_pages_are_in_the_language_of_the_browser(
+    visitor: Visitor, picture: Callable[[Page, str], None], language: str, sign_in: str
+) -> None:
+    reader = Reader(language)
+    page = visitor.new_context(locale=language, viewport={"width": 1440, "height": 900}).new_page()
+    page.set_default_timeout(45_000)
+    reader.opens(page, "/sign-in")
+    picture(page, f"sign-in-{language}")
+    page.locator("#id_username").fill("opal")
+    page.locator("#id_password").fill(PASSWORD)
+    page.get_by_role("button", name=sign_in).click()
+    page.locator("html[data-loaded]").wait_for(state="attached")
+    mission = _stores_mission(page)
+    for path in ("/", "/live", "/fleet", "/account", f"/missions/{mission}"):
+        reader.opens(page, path)
+        picture(page, f"{path.strip('/').split('/')[0] or 'missions'}{'-plan' if mission in path else ''}-{language}")
     assert reader.found == {}
 
 

@@ -25,13 +25,16 @@ def page_module(name: str) -> SafeString:
     return format_html('{}\n<script type="module" src="{}"></script>', preloads, address)
 
 
+@register.simple_tag
+def catalogue() -> SafeString:
+    """`{% catalogue %}` in the head names the scripts' texts in the page's language for static/js/text.js; empty in English."""
+    return format_html_join("", '<meta name="catalogue" content="{}">', ((address,) for address in _texts()))
+
+
 def _texts() -> tuple[str, ...]:
-    """Return the text modules of the page's language, which its scripts import by name."""
-    language = (get_language() or "").split("-")[0]
-    if language == settings.LANGUAGE_CODE.split("-")[0]:
-        return ()
-    address = staticfiles_storage.url(f"js/locale/{language}.js")
-    return (*imported_by(address), address)
+    """Return the address of the scripts' texts in the page's language, compiled by scripts/development/texts.py."""
+    language = get_language() or settings.LANGUAGE_CODE
+    return () if language.split("-")[0] == "en" else (staticfiles_storage.url(f"js/locale/{language}.js"),)
 
 
 @cache

@@ -5,7 +5,7 @@ import { byId, icon } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
 import { notify, settle } from "../page/problem.js";
 import { chooseTheme, chosenTheme, onTheme } from "../page/theme.js";
-import { language, localeOf, t } from "../text.js";
+import { locale, t } from "../text.js";
 import { heightText, lengthText, speedText } from "../units.js";
 import { mountJobs } from "./jobs.js";
 import { mountPassword } from "./password.js";
@@ -70,7 +70,7 @@ byId("browser-zone").textContent = t("As the browser ({zone})", { zone: browserZ
 
 function showZone() {
   const timeZone = byId("time_zone", HTMLSelectElement).value || browserZone;
-  const clock = new Date().toLocaleTimeString(localeOf(language), {
+  const clock = new Date().toLocaleTimeString(locale, {
     timeZone,
     hour: "2-digit",
     minute: "2-digit",

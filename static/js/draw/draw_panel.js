@@ -2,8 +2,8 @@
 
 import { h, icon } from "../dom.js";
 import { measure } from "../domain/geodesy.js";
-import { t } from "../text.js";
-import { areaText, countText, lengthText } from "../units.js";
+import { t, tn } from "../text.js";
+import { areaText, lengthText } from "../units.js";
 import { circleOf, removeRing, removeVertex, verticesOf } from "./shape.js";
 import { createVertexTable } from "./vertex_table.js";
 
@@ -184,7 +184,7 @@ function figuresOf(shape, exact = {}) {
     circle && t("{radius} radius", { radius: lengthText(circle.radius_m) }),
     length_m && lengthText(length_m),
     area_m2 && areaText(area_m2),
-    hasPoints && countText(verticesOf(shape).length, "point"),
+    hasPoints && tn(verticesOf(shape).length, "{count} point", "{count} points"),
   ]
     .filter(Boolean)
     .join(", ");

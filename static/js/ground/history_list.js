@@ -1,17 +1,8 @@
 /** The history of an asset or a zone: who, when, from what to what, and the way back. */
 
 import { h, icon } from "../dom.js";
-import { t } from "../text.js";
-import {
-  clockText,
-  coordinateText,
-  countText,
-  exactHeightText,
-  exactText,
-  lengthText,
-  voltageText,
-  whenText,
-} from "../units.js";
+import { t, tn } from "../text.js";
+import { clockText, coordinateText, exactHeightText, exactText, lengthText, voltageText, whenText } from "../units.js";
 
 /** @import { GroundHistoryEntry } from "../api_types.d.ts" */
 /** @import { Geometry } from "../map/types.d.ts" */
@@ -62,13 +53,15 @@ export function factText(name, value) {
   if (value === null || value === undefined || value === "" || (Array.isArray(value) && !value.length))
     return t("not stated");
   if (name === "voltages_v") return value.map((/** @type {number} */ volts) => voltageText(volts / 1000)).join(", ");
-  if (name === "geometry") return countText(countPoints(value.coordinates), "point");
+  if (name === "geometry") return tn(countPoints(value.coordinates), "{count} point", "{count} points");
   if (name.endsWith("_m")) return exactHeightText(value);
   if (name === "circle")
     return t("{radius} round {place}", { radius: lengthText(value.radius_m), place: coordinateText(value.centre) });
   if (typeof value === "boolean") return value ? t("yes") : t("no");
   if (typeof value === "object")
-    return Array.isArray(value) ? countText(value.length, "period") : countText(Object.keys(value).length, "tag");
+    return Array.isArray(value)
+      ? tn(value.length, "{count} period", "{count} periods")
+      : tn(Object.keys(value).length, "{count} tag", "{count} tags");
   return String(value);
 }
 

@@ -1,8 +1,7 @@
 /** What the columns of an asset file become: each with samples of its values; the file is read again with the answer. */
 
 import { h, icon, setChildren } from "../dom.js";
-import { t } from "../text.js";
-import { countText } from "../units.js";
+import { t, tn } from "../text.js";
 
 /** @import { Column, Mapping, Parameters, Proposal } from "./types.d.ts" */
 
@@ -278,7 +277,7 @@ class ColumnMapping {
     choice.addEventListener("change", () => {
       kindValues[value] = choice.value;
     });
-    return columnRow(value, h("span", { class: "caption" }, countText(rows, "row")), choice);
+    return columnRow(value, h("span", { class: "caption" }, tn(rows, "{count} row", "{count} rows")), choice);
   }
 
   #read() {

@@ -3,7 +3,7 @@
 import { byId, h, icon, setChildren } from "../dom.js";
 import { open as openDialog } from "../page/keyboard.js";
 import { t, tn } from "../text.js";
-import { coordinateText, countText, numberText, whenText } from "../units.js";
+import { coordinateText, numberText, whenText } from "../units.js";
 import { columnMapping } from "./column_mapping.js";
 import { jobLine } from "./job_line.js";
 import { stateChip, titleOf } from "./list.js";
@@ -358,7 +358,7 @@ function versions(setName, acts) {
 /** @param {ZoneSetVersion} version @param {(() => void) | null} rollBack null for the present one */
 function versionRow({ version: number, zone_count, created_by, created_at }, rollBack) {
   const who = [created_by, whenText(created_at)].filter(Boolean).join(", ");
-  const name = `${t("Version {number}", { number })}: ${countText(zone_count, "zone")}`;
+  const name = `${t("Version {number}", { number })}: ${tn(zone_count, "{count} zone", "{count} zones")}`;
   const button = { type: "button", class: "button", onclick: rollBack };
   return h(
     "li",

@@ -1,7 +1,7 @@
 /** Texts of the page "Imports": kinds, states, differences and facts. */
 
-import { language, localeOf, t } from "../text.js";
-import { countText, heightText } from "../units.js";
+import { locale, t, tn } from "../text.js";
+import { heightText } from "../units.js";
 
 /** @import { Geometry } from "../map/types.d.ts" */
 /** @import { Action, Change, ImportKind, Proposal, Summary } from "./types.d.ts" */
@@ -53,7 +53,7 @@ export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EGM84", "EVRF2007", "DHHN20
 export const isOpen = (proposal) => proposal.state === "reading" || proposal.state === "applying";
 
 /** @param {number} value */
-const number = (value) => value.toLocaleString(localeOf(language));
+const number = (value) => value.toLocaleString(locale);
 
 /** "412 new, 3 changed, 1 vanished, 2 kept as edited by hand." @param {Record<string, number>} difference */
 export function differenceSentence(difference) {
@@ -91,7 +91,7 @@ export function touched(difference, { overwrites = false } = {}) {
 export function sizeText(bytes) {
   if (bytes === null || bytes === undefined) return "";
   if (bytes < 1024 * 1024) return `${number(Math.max(1, Math.round(bytes / 1024)))}${SPACE}kB`;
-  return `${(bytes / 1024 / 1024).toLocaleString(localeOf(language), { maximumFractionDigits: 1 })}${SPACE}MiB`;
+  return `${(bytes / 1024 / 1024).toLocaleString(locale, { maximumFractionDigits: 1 })}${SPACE}MiB`;
 }
 
 /** @type {Record<string, string>} */
@@ -129,7 +129,7 @@ export function factText(name, value) {
   if (Array.isArray(value))
     return value.length && value.every((entry) => typeof entry !== "object")
       ? value.join(", ")
-      : countText(value.length, "entry", "entries");
+      : tn(value.length, "{count} entry", "{count} entries");
   if (typeof value !== "object") return String(value);
   if ("value_m" in value)
     return `${number(/** @type {number} */ (value.value_m))}${SPACE}m ${"reference" in value ? (value.reference ?? "") : ""}`.trim();

@@ -1,6 +1,6 @@
 /** Grouping of target pills and UAVs that share one place on the screen, and the labels of groups. Values in, values out. */
 
-import { countText } from "../units.js";
+import { tn } from "../text.js";
 
 const MAX_RUNS_LENGTH = 8;
 const LETTER_PX = 7;
@@ -93,7 +93,8 @@ function merged(items, labelOf, overlaps) {
 /** @param {string} label */
 const dartWidth = (label) => DART_PX + label.length * DART_LETTER_PX;
 /** @param {Dart[]} members */
-const dartLabel = (members) => (members.length === 1 ? members[0].name : countText(members.length, "UAV"));
+const dartLabel = (members) =>
+  members.length === 1 ? members[0].name : tn(members.length, "{count} UAV", "{count} UAVs");
 
 /** @param {Group<Pill>} a @param {Group<Pill>} b */
 function overlap(a, b) {
@@ -103,7 +104,8 @@ function overlap(a, b) {
 /** @param {Pill[]} members */
 function groupLabel(members) {
   const [first] = members;
-  if (first.isMissed) return members.length === 1 ? "×" : `× ${countText(members.length, "target")}`;
+  if (first.isMissed)
+    return members.length === 1 ? "×" : `× ${tn(members.length, "{count} target", "{count} targets")}`;
   return mergedLabel(
     first.letter,
     members.map((pill) => pill.number),
@@ -126,5 +128,5 @@ export function mergedLabel(letter, numbers) {
   }
   const label = letter + runs.map((run) => (run.length > 1 ? `${run[0]}–${run.at(-1)}` : `${run[0]}`)).join(", ");
   if (label.length <= MAX_RUNS_LENGTH) return label;
-  return [letter, countText(numbers.length, "target")].filter(Boolean).join(", ");
+  return [letter, tn(numbers.length, "{count} target", "{count} targets")].filter(Boolean).join(", ");
 }

@@ -3,7 +3,7 @@
  * values out.
  */
 
-import { language, localeOf, t, tn } from "../text.js";
+import { locale, t, tn } from "../text.js";
 import { clockText, durationText, energyText, lengthText, typedMoment } from "../units.js";
 import { departureText } from "./flight_options.js";
 import { marginWords } from "./zones_passed.js";
@@ -86,7 +86,7 @@ export function ticksOf({ from_ms, to_ms }) {
 
 /** "Sun 22 Nov" of a moment as it is typed by the reader's clock. @param {string} typed */
 const dayName = (typed) =>
-  new Date(`${typed}Z`).toLocaleDateString(localeOf(language), {
+  new Date(`${typed}Z`).toLocaleDateString(locale, {
     timeZone: "UTC",
     weekday: "short",
     day: "numeric",

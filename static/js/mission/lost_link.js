@@ -2,7 +2,7 @@
 
 import { distance_m } from "../domain/geodesy.js";
 import { rallyName, routeLetter } from "../domain/palette.js";
-import { language, localeOf, t, tn } from "../text.js";
+import { locale, t, tn } from "../text.js";
 import { durationText, exactHeightText, numberText } from "../units.js";
 
 /** @import { FailedReturn, LostLinkCheck } from "../api_types.d.ts" */
@@ -246,7 +246,7 @@ export function checkText(state, plan) {
       count,
       "From {count} of {total} waypoints a UAV would not get home.",
       "From {count} of {total} waypoints a UAV would not get home.",
-      { total: total.toLocaleString(localeOf(language)) },
+      { total: total.toLocaleString(locale) },
     );
   }
   return uncountedOf(plan).length === flownOf(plan).length

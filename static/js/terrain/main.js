@@ -7,7 +7,6 @@ import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
-import { countText } from "../units.js";
 import { mountGroundPanel } from "./ground_panel.js";
 import { askToRemove, mountModelList } from "./model_list.js";
 import { profileSentence, towersAlong } from "./profile_chart.js";
@@ -138,7 +137,7 @@ async function profileOfPoints() {
     return;
   }
   const found = await ask(() => askProfile(points));
-  if (found) show(found, [], { title: countText(points.length, "point"), canStepBack: true });
+  if (found) show(found, [], { title: tn(points.length, "{count} point", "{count} points"), canStepBack: true });
 }
 
 /** @param {number} id */

@@ -1,8 +1,8 @@
 /** The terrain models in the side: what counts on top first, where each is from, and how whole it is. */
 
 import { byId, h, icon } from "../dom.js";
-import { language, localeOf, t } from "../text.js";
-import { countText, heightText, lengthText, numberText, whenText } from "../units.js";
+import { locale, t, tn } from "../text.js";
+import { heightText, lengthText, numberText, whenText } from "../units.js";
 
 /** @import { ModelFeature, ModelProperties } from "../api_types.d.ts" */
 
@@ -18,8 +18,8 @@ export function voidsText({ posts, voids }) {
   const share =
     percent < 0.1
       ? t("under {share}", { share: numberText(0.1, 1) })
-      : percent.toLocaleString(localeOf(language), { maximumFractionDigits: 1 });
-  return `${countText(voids, "post")}, ${share}\u00a0%`;
+      : percent.toLocaleString(locale, { maximumFractionDigits: 1 });
+  return `${tn(voids, "{count} post", "{count} posts")}, ${share}\u00a0%`;
 }
 
 /** [term, words] of one model. @param {ModelProperties} properties @returns {[string, string][]} */

@@ -2,7 +2,7 @@
 
 import { svg } from "../dom.js";
 import { t, tn } from "../text.js";
-import { countText, heightText, lengthText, numberText } from "../units.js";
+import { heightText, lengthText, numberText } from "../units.js";
 
 /** @import { AssetFeature, Profile } from "../api_types.d.ts" */
 
@@ -145,7 +145,7 @@ export function profileSentence(profile, towers = []) {
       high: heightText(profile.highest_m ?? 0),
     }),
   ];
-  if (towers.length) parts.push(countText(towers.length, "tower"));
+  if (towers.length) parts.push(tn(towers.length, "{count} tower", "{count} towers"));
   if (unknown)
     parts.push(
       tn(unknown, "unknown at {count} place of {all}", "unknown at {count} places of {all}", {

@@ -4,7 +4,7 @@ import { ApiError, follow, get, post } from "../api.js";
 import { byId, h, icon, setChildren, term } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
-import { countText, whenText } from "../units.js";
+import { whenText } from "../units.js";
 import { askSubscription, openDialog } from "./subscription_dialog.js";
 
 /** @import { Answer } from "../api.js" */
@@ -109,7 +109,7 @@ class SetsPanel {
         "div",
         { class: "set-head" },
         h("strong", {}, set.name),
-        h("span", { class: "caption" }, countText(set.zone_count, "zone")),
+        h("span", { class: "caption" }, tn(set.zone_count, "{count} zone", "{count} zones")),
       ),
       factsOf(set),
       noticesOf(set),
@@ -237,7 +237,7 @@ function subscriptionWords({ is_active, interval_h, fetched_at }) {
 
 /** @param {ZoneSetVersion} version @param {boolean} isNewest @param {() => void} rollBack */
 function versionRow({ version: number, zone_count, created_at, created_by, source }, isNewest, rollBack) {
-  const facts = [countText(zone_count, "zone"), whenText(created_at), created_by, source?.file_name];
+  const facts = [tn(zone_count, "{count} zone", "{count} zones"), whenText(created_at), created_by, source?.file_name];
   const title = isNewest ? t("Version {number}, the newest", { number }) : t("Version {number}", { number });
   return h(
     "li",

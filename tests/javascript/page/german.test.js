@@ -1,7 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-globalThis.document = { documentElement: { lang: "de", dataset: {} }, cookie: "" };
+const catalogue = new URL("../../../static/js/locale/de.js", import.meta.url).href;
+globalThis.document = {
+  documentElement: { lang: "de", dataset: {} },
+  cookie: "",
+  querySelector: () => ({ getAttribute: () => catalogue }),
+};
 const { changeWords } = await import("../../../static/js/mission/uav_changes.js");
 
 test("what has changed of a UAV is told in German", () => {

@@ -1,9 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import { tn } from "../../../static/js/text.js";
 import {
   coordinateText,
-  countText,
   durationText,
   lengthText,
   momentTyped,
@@ -47,8 +46,8 @@ test("voltages are kV", () => {
 });
 
 test("one is singular and thousands have a comma", () => {
-  assert.equal(countText(1, "target"), "1 target");
-  assert.equal(countText(2_000, "target"), "2,000 targets");
+  assert.equal(tn(1, "{count} target", "{count} targets"), "1 target");
+  assert.equal(tn(2_000, "{count} target", "{count} targets"), "2,000 targets");
 });
 
 test("times are said as people say them", () => {
