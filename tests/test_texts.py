@@ -39,9 +39,8 @@ def test_no_translation_is_left_of_a_text_that_is_gone(language: str) -> None:
 
 @pytest.mark.parametrize("language", texts.languages())
 def test_a_translation_has_the_placeholders_of_its_text(language: str) -> None:
-    translated = [
-        (texts.forms(message.id)[-1], message.string) for domain in texts.DOMAINS for message in texts.translations(language, domain)
-    ]
+    messages = [message for domain in texts.DOMAINS for message in texts.translations(language, domain)]
+    translated = [(texts.forms(message.id)[-1], message.string) for message in messages]
     wrong = [
         text for text, forms in translated if not all(_placeholders(form) <= _placeholders(text) | {"count"} for form in texts.forms(forms))
     ]

@@ -31,12 +31,12 @@ APPS = ("operation", "config", "workspace", "accounts", "inspection", "planning"
 
 Text = str | tuple[str, str]  # the second form has a plural; in scripts "|hint" names the meaning of a word, the context in a .po file
 
-OF_SERVER = ("_", "gettext", "gettext_lazy", "gettext_noop", "ngettext", "ngettext_lazy", "ngettext_noop")
-OF_SCRIPTS = ("t", "tn")
+Calls = dict[str, None]
+OF_SERVER: Calls = dict.fromkeys(("_", "gettext", "gettext_lazy", "gettext_noop", "ngettext", "ngettext_lazy", "ngettext_noop"))
+OF_SCRIPTS: Calls = dict.fromkeys(("t", "tn"))
 CALL_IN_SCRIPT = re.compile(r"(?<![\w.$])tn?\(")
-UNSTABLE_HEADER = re.compile(
-    r'^"(?:POT-Creation-Date|PO-Revision-Date|Last-Translator|Language-Team|Generated-By|Report-Msgid-Bugs-To): .*\n', re.M
-)
+UNSTABLE = "POT-Creation-Date|PO-Revision-Date|Last-Translator|Language-Team|Generated-By|Report-Msgid-Bugs-To"
+UNSTABLE_HEADER = re.compile(rf'^"(?:{UNSTABLE}): .*\n', re.M)
 
 
 # --- texts of the program -------------------------------------------------------------------------------------------------------
@@ -83,7 +83,7 @@ def texts_of_script(source: str) -> Iterator[Text]:
             break
 
 
-def _text(function: str, arguments: object) -> Iterator[Text]:
+def _text(function: object, arguments: object) -> Iterator[Text]:
     """Return the text of a call: its first literal, or the first two where it has a plural."""
     literals = [argument for argument in _several(arguments) if isinstance(argument, str)]
     if function in ("tn", "ngettext", "ngettext_lazy", "ngettext_noop"):

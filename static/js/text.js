@@ -7,7 +7,7 @@ const language = globalThis.document?.documentElement.lang || "en";
 /** How Intl writes dates and figures; English is British. */
 export const locale = language === "en" ? "en-GB" : language;
 
-/** @type {string | undefined} of the compiled catalogue, from {% catalogue %} in the page's template; English has none */
+/** @type {string | null | undefined} of the compiled catalogue, from {% catalogue %} in the page's template; English has none */
 const address = globalThis.document?.querySelector?.('meta[name="catalogue"]')?.getAttribute("content");
 /** @type {{ default: Texts, form: (count: number) => number }} */
 const catalogue = address ? await import(address) : { default: {}, form: () => 0 };
