@@ -2276,7 +2276,7 @@ export interface components {
          *     * `fr` - Français
          * @enum {string}
          */
-        LanguageEnum: "en" | "de" | "es" | "fr";
+        Language: "en" | "de" | "es" | "fr";
         /** @description The plan that the current one replaced, for comparison. */
         LastPlan: {
             /** Format: date-time */
@@ -3468,7 +3468,7 @@ export interface components {
             units?: components["schemas"]["Units"];
             /** @description IANA name; empty: the browser's */
             time_zone?: string;
-            language?: components["schemas"]["LanguageEnum"] | components["schemas"]["BlankEnum"];
+            language?: components["schemas"]["Language"] | components["schemas"]["BlankEnum"];
             single_keys?: boolean;
         };
         /** @description An asset that a user draws or corrects. Lengths in metres, voltages in volts. */
@@ -8027,7 +8027,7 @@ export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
 export type LandingHere = components['schemas']['LandingHere'];
-export type LanguageEnum = components['schemas']['LanguageEnum'];
+export type Language = components['schemas']['Language'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];
 export type LastStop = components['schemas']['LastStop'];
