@@ -140,7 +140,7 @@ def test_main_pages_are_in_the_language_of_the_browser(
     page.get_by_role("button", name=sign_in).click()
     page.locator("html[data-loaded]").wait_for(state="attached")
     mission = _stores_mission(page)
-    for path in ("/", "/live", "/fleet", "/account", f"/missions/{mission}"):
+    for path in ("/", "/live", "/uavs", "/account", f"/missions/{mission}"):
         reader.opens(page, path)
         picture(page, f"{path.strip('/').split('/')[0] or 'missions'}{'-plan' if mission in path else ''}-{language}")
     assert reader.found == {}

@@ -56,7 +56,7 @@ export function createActs({ reload, showProblem }) {
       );
       await reload();
       toast(t("“{name}” is there.", { name: data.name }), {
-        label: t("Open"),
+        label: t("Open|verb"),
         act: () => location.assign(`/missions/${data.id}`),
       });
     } catch (error) {

@@ -227,7 +227,7 @@ function actButtons(mission, canPlan, acts, name) {
   more.addEventListener("click", () =>
     toggleMenu(more, () =>
       menuOf(mission.name, [
-        { icon: "map", label: t("Open"), act: () => location.assign(`/missions/${mission.id}`) },
+        { icon: "map", label: t("Open|verb"), act: () => location.assign(`/missions/${mission.id}`) },
         ...(mayChange ? [{ icon: "pencil", label: t("Rename"), act: edit }] : []),
         ...(canPlan ? [{ icon: "copy", label: t("Duplicate"), act: acts.duplicate }] : []),
         { icon: "link", label: t("Copy link"), act: acts.copyAddress },
