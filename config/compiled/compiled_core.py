@@ -8,6 +8,7 @@ read. Checkouts of the same sources share the code (docs/decisions/0045): paths 
 import hashlib
 import os
 import platform
+import re
 import shutil
 import tempfile
 from contextlib import suppress
@@ -17,6 +18,7 @@ from config.private_servers import PROJECT_DIR, state_directory
 
 SOURCE_FOLDERS = ("inspection/geodesy", "inspection/network", "planning")
 SHIPPED = PROJECT_DIR / ".venv" / "compiled"
+COMPILER_LIBRARIES = ("cffi", "llvmlite", "numba", "numpy", "scipy")
 LOCATOR = "config.compiled.compiled_places.ProjectCacheLocator"
 # Environment variables of numba that change the code, but not the names under which numba stores it.
 CODE_OPTIONS = ("NUMBA_BOUNDSCHECK", "NUMBA_DEBUGINFO", "NUMBA_ENABLE_AVX", "NUMBA_LOOP_VECTORIZE", "NUMBA_OPT", "NUMBA_SLP_VECTORIZE")
@@ -27,13 +29,18 @@ STAMP_LETTERS = 16  # of the digest, in the folder's name
 def compiled_stamp() -> str:
     """Return a digest of the sources, compiler options and target; the same in every checkout of the same content."""
     digest = hashlib.sha256(f"{platform.python_version()} {_processor()} {_options()}".encode())
-    for path in (PROJECT_DIR / "requirements.txt", PROJECT_DIR / "config" / "compiled" / "compiled_places.py"):
-        digest.update(path.read_bytes())
+    digest.update(" ".join(compiler_versions((PROJECT_DIR / "requirements.txt").read_text())).encode())
+    digest.update((PROJECT_DIR / "config" / "compiled" / "compiled_places.py").read_bytes())
     for folder in SOURCE_FOLDERS:
         for path in sorted((PROJECT_DIR / folder).rglob("*.py")):
             content = path.read_bytes()  # constants of any file may be compiled in
             digest.update(f" {folder}/{path.relative_to(PROJECT_DIR / folder)} {len(content)} ".encode() + content)
     return digest.hexdigest()
+
+
+def compiler_versions(requirements: str) -> list[str]:
+    """Return the pinned libraries that decide what is compiled, such as "numba==0.61.0"; others change without a new core."""
+    return re.findall(rf"^(?:{'|'.join(COMPILER_LIBRARIES)})==[^\s\\]+", requirements, re.M)
 
 
 def is_compiled(folder: Path) -> bool:

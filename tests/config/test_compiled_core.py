@@ -76,16 +76,24 @@ def test_the_place_and_the_times_of_the_sources_do_not_count(tmp_path, monkeypat
     assert len(stamps) == 1
 
 
-@pytest.mark.parametrize("file", ["requirements.txt", "config/compiled/compiled_places.py", "core/ways.py"])
-def test_other_content_has_another_stamp(tmp_path, monkeypatch, file):
+@pytest.mark.parametrize(
+    ("file", "content", "is_another"),
+    [
+        ("requirements.txt", "numba==2.0", True),
+        ("requirements.txt", "zstandard==2.0", False),
+        ("config/compiled/compiled_places.py", "another", True),
+        ("core/ways.py", "another", True),
+    ],
+)
+def test_what_decides_about_the_code_is_part_of_the_stamp(tmp_path, monkeypatch, file, content, is_another):
     for name in ("requirements.txt", "config/compiled/compiled_places.py", "core/ways.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("the same")
     monkeypatch.setattr(compiled_core, "PROJECT_DIR", tmp_path)
     monkeypatch.setattr(compiled_core, "SOURCE_FOLDERS", ("core",))
     before = compiled_stamp()
-    (tmp_path / file).write_text("another")
-    assert compiled_stamp() != before
+    (tmp_path / file).write_text(content)
+    assert (compiled_stamp() != before) is is_another
 
 
 def test_a_moved_source_has_another_stamp(tmp_path, monkeypatch):

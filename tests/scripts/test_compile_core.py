@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from config.compiled.compiled_core import numba_settings
+from config.compiled.compiled_core import COMPILER_LIBRARIES, compiler_versions, numba_settings
 from scripts import compile_core
 from scripts.compile_core import PARTS, index_files, take_over
 
@@ -24,6 +24,14 @@ def add(folder: Path, function: str, index: str, **data: str) -> None:
 
 def files(folder: Path) -> dict[str, str]:
     return {path.name: path.read_text() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_only_a_version_of_the_compilers_libraries_asks_for_a_new_core():
+    pinned = (PROJECT_DIR / "requirements.txt").read_text()
+    versions = compiler_versions(pinned)
+    assert [version.partition("==")[0] for version in versions] == list(COMPILER_LIBRARIES)
+    assert compiler_versions(pinned + "numba-extras==1.0\nzstandard==0.23.0 \\\n    --hash=sha256:00\n") == versions
+    assert compiler_versions(pinned.replace("numba==", "numba==1")) != versions
 
 
 def test_functions_that_a_part_adds_are_taken_over(tmp_path):
