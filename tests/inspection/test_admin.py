@@ -315,3 +315,8 @@ def test_what_the_program_writes_cannot_be_changed(client: Client, curator: User
     entry = AuditEntry.objects.create(organisation=curator.organisation, actor=curator, action="x", subject_type="x", subject_id="1")
     assert administrator.post(change_address(entry), {"action": "y"}).status_code == 403
     assert administrator.post(reverse("admin:workspace_auditentry_delete", args=[entry.pk]), {"post": "yes"}).status_code == 403
+
+
+def test_scripts_of_the_admin_find_the_texts_of_the_readers_language() -> None:
+    page = client_of(a_user(Role.ADMINISTRATOR)).get("/admin/", headers={"Accept-Language": "de"}).content.decode()
+    assert re.search(r'<meta name="catalogue" content="/static/js/locale/de[^"]*\.js">', page)
