@@ -11,7 +11,7 @@ from workspace.models import User
 
 
 def language_of_request(user: User, request: HttpRequest) -> str:
-    return user.language or translation.get_language_from_request(request)
+    return user.own_language or translation.get_language_from_request(request)
 
 
 def language_of_socket(user: User, scope: Mapping[str, Any]) -> str:

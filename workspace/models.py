@@ -3,6 +3,7 @@
 import uuid
 from typing import Any, ClassVar
 
+from django.conf import settings
 from django.contrib.auth.models import AbstractUser
 from django.contrib.auth.models import UserManager as DjangoUserManager
 from django.contrib.postgres.fields import ArrayField
@@ -101,6 +102,11 @@ class User(AbstractUser):
         """Return a hash that ends sessions after a new password, as in Django, and after a new generation."""
         text = f"{self.password}{self.session_generation or ''}"
         return salted_hmac("workspace.session", text, secret=secret, algorithm="sha256").hexdigest()
+
+    @property
+    def own_language(self) -> str:
+        """Return the chosen language; empty for the browser's, also where the chosen one is no longer in locale/."""
+        return self.language if self.language in dict(settings.LANGUAGES) else ""
 
     @property
     def display_name(self) -> str:

@@ -237,6 +237,11 @@ def test_a_chosen_language_stands_against_the_browsers(client: Client) -> None:
     assert '<html lang="en' in client.get("/account", headers={"Accept-Language": "de"}).content.decode()
 
 
+def test_a_chosen_language_that_is_no_longer_offered_gives_way_to_the_browsers(client: Client) -> None:
+    User.objects.update(language="it")
+    assert '<html lang="de"' in client.get("/account", headers={"Accept-Language": "de"}).content.decode()
+
+
 def test_times_of_the_api_stay_in_utc(client: Client) -> None:
     change(client, time_zone="Asia/Kathmandu")
     post(client, "tokens", name="export")

@@ -11,7 +11,7 @@ from workspace.models import User
 GERMAN: dict[str, Any] = {"headers": [(b"host", b"here"), (b"accept-language", b"de-AT,de;q=0.9,en;q=0.5")], "cookies": {}}
 
 
-@pytest.mark.parametrize(("own", "scope", "language"), [("", GERMAN, "de"), ("en", GERMAN, "en"), ("", {}, "en")])
+@pytest.mark.parametrize(("own", "scope", "language"), [("", GERMAN, "de"), ("en", GERMAN, "en"), ("", {}, "en"), ("it", GERMAN, "de")])
 def test_a_websocket_is_spoken_to_in_ones_own_language_else_the_browsers(own: str, scope: dict[str, Any], language: str) -> None:
     assert language_of_socket(User(language=own), scope) == language
 

@@ -28,7 +28,7 @@ class PreferencesMiddleware:
 
     def __call__(self, request: HttpRequest) -> HttpResponse:
         user = _signed_in_user(request)
-        own_language = user.language if user else ""
+        own_language = user.own_language if user else ""
         zone = user.time_zone if user and not request.path.startswith("/api/") else ""
         with (
             translation.override(own_language or translation.get_language_from_request(request)),
