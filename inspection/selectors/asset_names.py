@@ -44,7 +44,7 @@ VOLTAGE_NOT_STATED = gettext_noop("voltage not stated")
 PLACED = gettext_noop("%(kind)s %(place)s of %(places)s")
 RAILWAY_OF = gettext_noop("%(operator)s railway")
 NAMING = ("kind", "subtype", "place_on_line", "places_on_line", "osm_type", "osm_id")
-NUMBERED = re.compile(r"(?P<word>\w[\w ]*?) (?P<osm>[nwr])?(?P<number>\d{1,18})", re.IGNORECASE)
+NUMBERED = r" (?P<osm>[nwr])?(?P<number>\d{1,18})"
 
 
 @dataclass(frozen=True)
@@ -97,26 +97,27 @@ def assets_with_made_names(assets: QuerySet[Asset], names: Collection[MadeName])
 def made_name(text: str) -> MadeName | None:
     """Parse a generated name in any language of the pages; None for other texts. Case and double spaces do not matter."""
     plain = " ".join(text.split())
-    for words, placed in _languages():
+    for words, placed, numbered in _languages():
         if (match := placed.fullmatch(plain)) and (noun := words.get(match["word"].lower())):
             return MadeName(noun, place=(int(match["place"]), int(match["places"])))
-        if (match := NUMBERED.fullmatch(plain)) and (noun := words.get(match["word"].lower())):
+        if (match := numbered.fullmatch(plain)) and (noun := words.get(match["word"].lower())):
             number = int(match["number"])
             return MadeName(noun, osm=(match["osm"].lower(), number)) if match["osm"] else MadeName(noun, number=number)
     return None
 
 
 @lru_cache(maxsize=1)
-def _languages() -> list[tuple[dict[str, str], re.Pattern[str]]]:
-    """Return for each language its lower-case words for kinds with their English, and the pattern of a place on a line."""
+def _languages() -> list[tuple[dict[str, str], re.Pattern[str], re.Pattern[str]]]:
+    """Return for each language its lower-case words for kinds with their English, and the patterns of places on lines and of numbers."""
     languages = []
     for code, _name in settings.LANGUAGES:
         with translation.override(code):
             words = {_(noun).lower(): noun for noun in {*KIND_WORDS.values(), *WORDS.values()}}
             stated = _(PLACED) % {"kind": "{kind}", "place": "{place}", "places": "{places}"}
-        pattern = re.escape(stated).replace(r"\{kind\}", r"(?P<word>\w[\w ]*?)")
+        word = rf"(?P<word>{'|'.join(map(re.escape, words))})"
+        pattern = re.escape(stated).replace(r"\{kind\}", word)
         pattern = pattern.replace(r"\{place\}", r"(?P<place>\d{1,6})").replace(r"\{places\}", r"(?P<places>\d{1,6})")
-        languages.append((words, re.compile(pattern, re.IGNORECASE)))
+        languages.append((words, re.compile(pattern, re.IGNORECASE), re.compile(word + NUMBERED, re.IGNORECASE)))
     return languages
 
 

@@ -8,6 +8,7 @@ from django.http import HttpResponse
 from django.test import Client
 
 from inspection.models import Asset
+from inspection.selectors.asset_names import MadeName, made_name
 from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import bridge, line, railway, tower
 from workspace.models import Role
@@ -332,3 +333,20 @@ def test_a_search_says_how_many_there_are_where_asked(client: Client) -> None:
     assert found(client, "text=AEP&limit=2&total=true")["total"] == 4
     page = found(client, "text=AEP&limit=2&total=true&flyable=true")
     assert (page["total"], len(page["features"])) == (3, 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "made"),
+    [
+        ("Tower 18 of 41", MadeName("Tower", place=(18, 41))),
+        ("mast  18 VON 41", MadeName("Tower", place=(18, 41))),
+        ("U-Bahn w5", MadeName("Subway", osm=("w", 5))),
+        ("Vía férrea 12", MadeName("Railway", number=12)),
+        ("Voie ferrée W7", MadeName("Railway", osm=("w", 7))),
+        ("Pylône 3 sur 12", MadeName("Tower", place=(3, 12))),
+        ("Ma\u017ft 3", None),
+        ("Somebody 12", None),
+    ],
+)
+def test_generated_names_are_found_in_every_language(text: str, made: MadeName | None) -> None:
+    assert made_name(text) == made
