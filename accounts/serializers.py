@@ -55,12 +55,17 @@ class AccountChangeSerializer(serializers.Serializer):
     theme = serializers.ChoiceField(choices=Theme.choices, required=False)
     units = serializers.ChoiceField(choices=Units.choices, required=False)
     time_zone = serializers.CharField(max_length=64, allow_blank=True, required=False, help_text="IANA name; empty: the browser's")
-    language = serializers.ChoiceField(choices=settings.LANGUAGES, required=False, allow_blank=True)
+    language = serializers.CharField(max_length=10, allow_blank=True, required=False, help_text="code; empty: the browser's")
     single_keys = serializers.BooleanField(required=False)
 
     def validate_time_zone(self, value: str) -> str:
         if value and value not in TIME_ZONES:
             raise serializers.ValidationError(_("There is no time zone of this name."))
+        return value
+
+    def validate_language(self, value: str) -> str:
+        if value and value not in dict(settings.LANGUAGES):
+            raise serializers.ValidationError(_("The pages are not available in this language."))
         return value
 
 

@@ -60,8 +60,8 @@ def log_settings(environment: Mapping[str, str]) -> dict[str, Any]:
 
 
 def languages(locale: Path) -> list[tuple[str, str]]:
-    """Return the code of English and of each language with a directory in `locale`, with its own name for itself."""
-    codes = ["en", *sorted(to_language(path.name) for path in locale.iterdir() if path.is_dir())]
+    """Return the code of English and of each language with texts in `locale`, with its own name for itself."""
+    codes = ["en", *sorted(to_language(path.parts[-3]) for path in locale.glob("*/LC_MESSAGES/django.po"))]
     return [(code, capfirst(str(get_language_info(code)["name_local"]))) for code in codes]
 
 

@@ -12,7 +12,7 @@ def _contact() -> dict[str, str]:
     return {"name": "Administrators of this installation"} | ({"email": email} if email else {})
 
 
-def openapi_settings(languages: list[tuple[str, str]]) -> dict[str, Any]:
+def openapi_settings() -> dict[str, Any]:
     return {
         "TITLE": "Spanwise",
         "DESCRIPTION": "Planning, rehearsing, flying and reviewing UAV inspections of power lines, bridges and railways.",
@@ -38,7 +38,6 @@ def openapi_settings(languages: list[tuple[str, str]]) -> dict[str, Any]:
             "TokenScope": "workspace.models.TokenScope",
             "Theme": "workspace.models.Theme",
             "Units": "workspace.models.Units",
-            "Language": languages,
             "SignInOutcome": "workspace.models.SignInOutcome",
             "InvitationState": "accounts.serializers.InvitationState",
             "ProposalState": "inspection.models.ProposalState",

@@ -232,7 +232,7 @@ REST_FRAMEWORK: dict[str, Any] = {
     "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
 }
 
-SPECTACULAR_SETTINGS = openapi_settings(LANGUAGES)
+SPECTACULAR_SETTINGS = openapi_settings()
 
 # Open websockets over all `live` programs; 0: no limit. Those of an address count for all operators behind it.
 SOCKETS_PER_USER = int(os.environ.get("SPANWISE_SOCKETS_PER_USER", "32"))

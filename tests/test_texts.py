@@ -57,9 +57,19 @@ def test_a_compiled_catalogue_has_the_plural_forms_of_its_language(language: str
     assert '"Done|job": ' in module, "a context is part of the key"
 
 
-def test_a_language_is_a_directory_of_locale() -> None:
-    assert languages(texts.LOCALE) == [("en", "English"), ("de", "Deutsch"), ("es", "Español"), ("fr", "Français")]
-    assert languages(texts.LOCALE) == settings.LANGUAGES
+def test_a_language_is_added_by_its_files_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(texts, "LOCALE", tmp_path / "locale")
+    monkeypatch.setattr(texts, "COMPILED_SCRIPTS", tmp_path / "compiled")
+    (tmp_path / "locale" / "it" / "LC_MESSAGES").mkdir(parents=True)  # what another branch has left behind
+    texts.update("pt_BR")
+    assert texts.languages() == ["pt_BR"]
+    assert languages(tmp_path / "locale") == [("en", "English"), ("pt-br", "Português Brasileiro")]
+    assert {"Sign in", "Done|job"} <= set(texts.missing("pt_BR"))
+    file = texts.po_file("pt_BR", "djangojs")
+    file.write_text(file.read_text().replace('msgctxt "job"\nmsgid "Done"\nmsgstr ""', 'msgctxt "job"\nmsgid "Done"\nmsgstr "Concluído"'))
+    texts.compile_all()
+    assert '"Done|job": "Concluído"' in (tmp_path / "compiled" / "pt-br.js").read_text()
+    assert languages(Path(settings.LOCALE_PATHS[0])) == settings.LANGUAGES
 
 
 def _templates() -> list[Path]:

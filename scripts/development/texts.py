@@ -1,7 +1,8 @@
 """Texts of pages and responses in other languages: gettext catalogues, one directory in locale/ for each language.
 
 python -m scripts.development.texts compile     make what the program and the pages read; ./run and ./check do it themselves
-python -m scripts.development.texts update      add new texts of the program to the .po files, and remove obsolete ones
+python -m scripts.development.texts update      add new texts of the program to the .po files, and remove obsolete ones; with names of
+                                                languages, such as pt_BR, add their files
 python -m scripts.development.texts missing     list texts without a translation
 """
 
@@ -11,6 +12,7 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -103,11 +105,14 @@ DOMAINS: dict[str, Callable[[], Iterator[Text]]] = {
 }
 
 
+@cache
 def program_texts(domain: str) -> Catalog:
     """Return the texts of the program, untranslated."""
     found = Catalog(fuzzy=False)
     for text in DOMAINS[domain]():
-        singular, _, context = (text if isinstance(text, str) else text[0]).partition("|" if domain == "djangojs" else "\0")
+        singular, context = text if isinstance(text, str) else text[0], ""
+        if domain == "djangojs":
+            singular, _, context = singular.partition("|")
         found.add(singular if isinstance(text, str) else (singular, text[1]), context=context or None)
     return found
 
@@ -116,8 +121,8 @@ def program_texts(domain: str) -> Catalog:
 
 
 def languages() -> list[str]:
-    """Return the names of the directories in locale/, such as "de" or "pt_BR"."""
-    return sorted(path.name for path in LOCALE.iterdir() if path.is_dir())
+    """Return the names of the directories in locale/ with texts, such as "de" or "pt_BR"."""
+    return sorted(path.parts[-3] for path in LOCALE.glob("*/LC_MESSAGES/django.po"))
 
 
 def po_file(language: str, domain: str) -> Path:
@@ -169,14 +174,14 @@ def _key(message: Message) -> str:
     return forms(message.id)[0] + (f"|{message.context}" if message.context else "")
 
 
-def update() -> None:
-    for language in languages():
+def update(*new_languages: str) -> None:
+    for language in sorted({*languages(), *new_languages}):
         for domain in DOMAINS:
             kept = catalogue(language, domain)
             kept.update(program_texts(domain), no_fuzzy_matching=True)
             written = io.BytesIO()
             write_po(written, kept, width=120, sort_output=True, ignore_obsolete=True)
-            po_file(language, domain).parent.mkdir(exist_ok=True)
+            po_file(language, domain).parent.mkdir(parents=True, exist_ok=True)
             po_file(language, domain).write_text(UNSTABLE_HEADER.sub("", written.getvalue().decode()))
 
 
@@ -205,8 +210,8 @@ def main(arguments: list[str]) -> int:
     match arguments:
         case ["compile"]:
             compile_all()
-        case ["update"]:
-            update()
+        case ["update", *new_languages]:
+            update(*new_languages)
         case ["missing"]:
             found = {language: missing(language) for language in languages()}
             print(json.dumps(found, ensure_ascii=False, indent=1))

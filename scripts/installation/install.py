@@ -103,12 +103,11 @@ def steps_to_do(purpose: str, base_python: str) -> list[Step]:
 
 def _texts_are_compiled() -> bool:
     """Whether scripts/development/texts.py has compiled the texts of server and pages since they last changed."""
-    for directory in (PROJECT_DIR / "locale").iterdir():
-        messages, code = directory / "LC_MESSAGES", directory.name.lower().replace("_", "-")
-        compiled = {"django.po": messages / "django.mo", "djangojs.po": PROJECT_DIR / "static" / "js" / "locale" / f"{code}.js"}
-        for source, target in compiled.items():
-            if not target.exists() or target.stat().st_mtime < (messages / source).stat().st_mtime:
-                return False
+    for source in (PROJECT_DIR / "locale").glob("*/LC_MESSAGES/*.po"):
+        code = source.parts[-3].lower().replace("_", "-")
+        target = source.with_suffix(".mo") if source.stem == "django" else PROJECT_DIR / "static" / "js" / "locale" / f"{code}.js"
+        if not target.exists() or target.stat().st_mtime < source.stat().st_mtime:
+            return False
     return True
 
 

@@ -40,7 +40,7 @@ export interface components {
             units?: components["schemas"]["Units"];
             /** @description IANA name; empty: the browser's */
             time_zone?: string;
-            /** @description one of settings.LANGUAGES; empty: the browser's */
+            /** @description code; empty: the browser's */
             language?: string;
             /** @description shortcuts of one key on the pages */
             single_keys?: boolean;
@@ -2269,14 +2269,6 @@ export interface components {
             /** @description what else is known of the place, and what is not */
             facts: string[];
         };
-        /**
-         * @description * `en` - English
-         *     * `de` - Deutsch
-         *     * `es` - Español
-         *     * `fr` - Français
-         * @enum {string}
-         */
-        Language: "en" | "de" | "es" | "fr";
         /** @description The plan that the current one replaced, for comparison. */
         LastPlan: {
             /** Format: date-time */
@@ -3468,7 +3460,8 @@ export interface components {
             units?: components["schemas"]["Units"];
             /** @description IANA name; empty: the browser's */
             time_zone?: string;
-            language?: components["schemas"]["Language"] | components["schemas"]["BlankEnum"];
+            /** @description code; empty: the browser's */
+            language?: string;
             single_keys?: boolean;
         };
         /** @description An asset that a user draws or corrects. Lengths in metres, voltages in volts. */
@@ -8027,7 +8020,6 @@ export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
 export type LandingHere = components['schemas']['LandingHere'];
-export type Language = components['schemas']['Language'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];
 export type LastStop = components['schemas']['LastStop'];

@@ -10,6 +10,6 @@ class Migration(migrations.Migration):
         migrations.AlterField(
             model_name="user",
             name="language",
-            field=models.CharField(blank=True, default="", help_text="one of settings.LANGUAGES; empty: the browser's", max_length=10),
+            field=models.CharField(blank=True, default="", help_text="code; empty: the browser's", max_length=10),
         ),
     ]
