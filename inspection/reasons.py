@@ -67,6 +67,10 @@ SENTENCES = register_sentences({
     "no_terrain_format": gettext_noop("This is neither a GeoTIFF nor an HGT file, zipped or not."),
     "no_json": gettext_noop("This is no JSON: %(error)s"),
     "no_utf8": gettext_noop("The text is not UTF-8: byte %(byte)s cannot be read."),
+    "reader_ended": gettext_noop("The file is damaged, or reading it needs more than %(mib)s MiB of memory."),
+    "reader_memory": gettext_noop("Reading the file needs more than %(mib)s MiB of memory. Cut it into parts."),
+    "reader_time": gettext_noop("Reading the file takes longer than %(seconds)s s. Cut it into parts."),
+    "leads_elsewhere": gettext_noop("This is a %(format)s file: it leads to other files or servers. Send the data themselves."),
     # notes for users
     "minutes_of_60": gettext_noop("Minutes or seconds of 60 were read as the next degree or minute: %(places)s."),
     "voids": gettext_noop(

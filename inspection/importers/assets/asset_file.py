@@ -12,6 +12,7 @@ from shapely import LineString, MultiLineString, MultiPolygon, Point
 from inspection.geodesy.geometry_validator import MAX_LINE_VERTICES, GeometryFault, VertexBudget, checked_geometry, checked_line
 from inspection.importers.archive import Archive, opened_archive
 from inspection.importers.assets.delimited import delimited_source
+from inspection.importers.assets.gdal_formats import format_of_start, gdal_file_source, geodatabase_source, has_geodatabase
 from inspection.importers.assets.geojson import geojson_source
 from inspection.importers.assets.geopackage import geopackage_source
 from inspection.importers.assets.kml import kml_source
@@ -145,6 +146,8 @@ def _source(path: Path, geometry_columns: Any, layer: str, *, has_system: bool) 
         return geopackage_source(path, layer, has_system=has_system)
     if start.startswith(b"PK"):
         return _zipped(path, layer, has_system=has_system)
+    if file_format := format_of_start(start):
+        return gdal_file_source(path, file_format, layer, has_system=has_system)
     text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
     if text.startswith((b"{", b"[")):
         return _plain(lambda: geojson_source(path))
@@ -164,11 +167,14 @@ def _zipped(path: Path, layer: str, *, has_system: bool) -> Iterator[Source]:
         if any(name.lower().endswith(".shp") for name in archive.names):
             with shapefile_source(archive, layer, has_system=has_system) as source:
                 yield source
+        elif has_geodatabase(archive):
+            with geodatabase_source(archive, layer, has_system=has_system) as source:
+                yield source
         elif name := _kml_of(archive):
             with archive.unpacked(name) as file:
                 yield kml_source(lambda: _again(file), "kmz")
         else:
-            raise refused("", "the archive holds neither a shapefile nor a KML document")
+            raise refused("", "the archive holds neither a shapefile nor a KML document nor a File Geodatabase")
 
 
 @contextmanager

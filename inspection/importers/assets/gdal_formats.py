@@ -1,0 +1,146 @@
+"""GML, FlatGeobuf, DXF and File Geodatabases, which GDAL reads in a process with limits."""
+
+import base64
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path, PurePosixPath
+from typing import IO, Any
+from xml.parsers import expat
+
+from inspection.geodesy.geometry_validator import GeometryFault
+from inspection.importers.archive import Archive
+from inspection.importers.assets.reference_systems import system_of_wkt
+from inspection.importers.assets.wkb import geometry_of_wkb
+from inspection.importers.gdal_process import GdalRefusal, gdal_process
+from inspection.importers.rows import MAX_ROWS, AssetFileError, Columns, RawRow, Source, plain_cell, refused, unique_names
+from operation.reasons import Reason
+
+_DRIVERS = {"gml": "GML", "flatgeobuf": "FlatGeobuf", "dxf": "DXF", "filegdb": "OpenFileGDB"}
+_GML_NAMESPACE = b"http://www.opengis.net/gml"
+_DXF_START = re.compile(rb"(?:\s*999[ \t]*\r?\n[^\n]*\n)*\s*0[ \t]*\r?\n[ \t]*SECTION\b")
+_PROLOG_BYTES = 64 * 1024
+_ELSEWHERE = {
+    "VRTDataset": "VRT", "OGRVRTDataSource": "VRT", "WFS_Capabilities": "WFS", "OGRWFSDataSource": "WFS", "GDAL_WMS": "WMS",
+    "WMS_Capabilities": "WMS", "WMT_MS_Capabilities": "WMS", "GDAL_WMTS": "WMTS", "WCS_GDAL": "WCS",
+}  # fmt: skip
+_TABLE_OF_TABLES = "a00000001.gdbtable"
+_GDB_MEMBER = re.compile(r"a[0-9a-f]{8}\.gdbtabl[ex]")
+_MAX_GDB_MEMBERS = 400  # two of each table
+
+
+def format_of_start(start: bytes) -> str:
+    """Return gml, flatgeobuf or dxf for the first bytes of such a file, else an empty text. Raises AssetFileError; see _root_of."""
+    if start.startswith(b"fgb\x03fgb"):
+        return "flatgeobuf"
+    if _DXF_START.match(start):
+        return "dxf"
+    if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<") or start.startswith((b"\xff\xfe<", b"\xfe\xff\x00<")):
+        root = _root_of(start)
+        if root not in {"", "kml"} and _GML_NAMESPACE in start.replace(b"\0", b""):
+            return "gml"
+    return ""
+
+
+def _root_of(start: bytes) -> str:
+    """Return the name of an XML document's first element; empty if it is not there. Refuses what declares entities or leads elsewhere."""
+    parser = expat.ParserCreate()
+    found: list[str] = []
+
+    def refuse_declaration(*_: Any) -> None:
+        raise refused(f"line {parser.CurrentLineNumber}", "the XML declares a document type or entities; such files are not read")
+
+    parser.StartElementHandler = lambda tag, _: found.append(tag.rpartition(":")[2])
+    parser.StartDoctypeDeclHandler = refuse_declaration
+    try:
+        parser.Parse(start)
+    except (expat.ExpatError, LookupError):
+        pass  # the reader of the format has the words for it
+    except AssetFileError:
+        raise
+    except ValueError:
+        return ""
+    root = found[0] if found else ""
+    if root in _ELSEWHERE:
+        raise refused("line 1", Reason("leads_elsewhere", {"format": _ELSEWHERE[root]}))
+    return root
+
+
+@contextmanager
+def gdal_file_source(path: Path, file_format: str, layer: str, *, has_system: bool) -> Iterator[Source]:
+    """Open a layer of a file. has_system: the user names the reference system. Raises AssetFileError."""
+    with path.open("rb") as file:
+        yield _source(file_format, {f"file.{file_format}": file}, layer, has_system=has_system)
+
+
+def has_geodatabase(archive: Archive) -> bool:
+    return any(PurePosixPath(name).name.lower() == _TABLE_OF_TABLES for name in archive.names)
+
+
+@contextmanager
+def geodatabase_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[Source]:
+    """Open a layer of a zipped File Geodatabase. Raises AssetFileError."""
+    folders = {PurePosixPath(name).parent for name in archive.names if PurePosixPath(name).name.lower() == _TABLE_OF_TABLES}
+    if len(folders) > 1:
+        raise refused("", "the archive holds several geodatabases; send them one by one")
+    folder = folders.pop()
+    members = {
+        name: PurePosixPath(name).name.lower()
+        for name in archive.names
+        if PurePosixPath(name).parent == folder and _GDB_MEMBER.fullmatch(PurePosixPath(name).name.lower())
+    }
+    if len(members) > _MAX_GDB_MEMBERS:
+        raise refused("", f"the geodatabase has {len(members) // 2} tables; at most {_MAX_GDB_MEMBERS // 2} are read")
+    with ExitStack() as stack:
+        files = {f"file.gdb/{member}": stack.enter_context(archive.unpacked(name)) for name, member in members.items()}
+        yield _source("filegdb", files, layer, has_system=has_system)
+
+
+def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has_system: bool) -> Source:
+    try:
+        with gdal_process(_DRIVERS[file_format], files, layer=layer, most=0) as process:
+            head = process.line()
+            process.line()
+    except GdalRefusal as refusal:
+        raise _refused("", refusal) from refusal
+    name = str(head["layer"])
+    columns = unique_names(head["columns"])
+    Columns().check(columns, name[:60])
+    if head["wkt"] is None and not has_system:
+        raise refused(name[:60], "the layer does not say in which reference system it is: name it (crs, such as EPSG:2056)")
+    system = None if has_system else system_of_wkt(head["wkt"], name[:60])
+    return Source(
+        file_format, lambda: _rows(_DRIVERS[file_format], files, name, columns), crs=system, layer=name, layers=tuple(head["layers"]),
+        columns=columns,
+    )  # fmt: skip
+
+
+def _rows(driver: str, files: Mapping[str, IO[bytes]], layer: str, columns: tuple[str, ...]) -> Iterator[RawRow]:
+    number = 0
+    try:
+        with gdal_process(driver, files, layer=layer, most=MAX_ROWS + 1) as process:
+            process.line()
+            while isinstance(answer := process.line(), list):
+                number += 1
+                place = f"{layer[:60]}, row {number}"
+                geometry, *values = answer
+                properties = {name: plain_cell(value, place) for name, value in zip(columns, values, strict=True)}
+                yield RawRow(place, properties, _geometry(geometry, place))
+    except GdalRefusal as refusal:
+        raise _refused(f"{layer[:60]}, after row {number}", refusal) from refusal
+
+
+def _geometry(value: str | bool | None, place: str) -> dict[str, Any] | GeometryFault | None:
+    if value is None:
+        return None
+    if isinstance(value, bool):
+        return GeometryFault(place, "the geometry is in another reference system than its layer")
+    try:
+        return geometry_of_wkb(base64.b64decode(value), place)
+    except GeometryFault as fault:
+        return fault
+
+
+def _refused(place: str, refusal: GdalRefusal) -> AssetFileError:
+    reason = refusal.reason
+    return refused(place, reason if isinstance(reason, Reason) else f"GDAL does not read it: {reason}")
