@@ -22,6 +22,7 @@ from inspection.importers.rows import MAX_FAULTS, MAX_ROWS, AssetFileError, Cell
 
 MAX_VERTICES = 2_000_000
 MAX_PARTS = 5_000  # lines of one row
+_START_BYTES = 64 * 1024  # with the first element of an XML document
 
 Shape = Point | LineString | MultiLineString | MultiPolygon
 
@@ -139,7 +140,7 @@ def checked_shape(value: dict[str, Any], place: str) -> Shape:
 
 def _source(path: Path, geometry_columns: Any, layer: str, *, has_system: bool) -> Any:
     with path.open("rb") as file:
-        start = file.read(4096)
+        start = file.read(_START_BYTES)
     if not start.strip():
         raise refused("", "the file is empty")
     if start.startswith(b"SQLite format 3\0"):

@@ -3,7 +3,7 @@
 import base64
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from typing import IO, Any
 from xml.parsers import expat
@@ -19,7 +19,6 @@ from operation.reasons import Reason
 _DRIVERS = {"gml": "GML", "flatgeobuf": "FlatGeobuf", "dxf": "DXF", "filegdb": "OpenFileGDB"}
 _GML_NAMESPACE = b"http://www.opengis.net/gml"
 _DXF_START = re.compile(rb"(?:\s*999[ \t]*\r?\n[^\n]*\n)*\s*0[ \t]*\r?\n[ \t]*SECTION\b")
-_PROLOG_BYTES = 64 * 1024
 _ELSEWHERE = {
     "VRTDataset": "VRT", "OGRVRTDataSource": "VRT", "WFS_Capabilities": "WFS", "OGRWFSDataSource": "WFS", "GDAL_WMS": "WMS",
     "WMS_Capabilities": "WMS", "WMT_MS_Capabilities": "WMS", "GDAL_WMTS": "WMTS", "WCS_GDAL": "WCS",
@@ -30,40 +29,46 @@ _MAX_GDB_MEMBERS = 400  # two of each table
 
 
 def format_of_start(start: bytes) -> str:
-    """Return gml, flatgeobuf or dxf for the first bytes of such a file, else an empty text. Raises AssetFileError; see _root_of."""
+    """Return gml, flatgeobuf or dxf for the first bytes of such a file, else an empty text. Raises AssetFileError."""
     if start.startswith(b"fgb\x03fgb"):
         return "flatgeobuf"
     if _DXF_START.match(start):
         return "dxf"
-    if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<") or start.startswith((b"\xff\xfe<", b"\xfe\xff\x00<")):
-        root = _root_of(start)
-        if root not in {"", "kml"} and _GML_NAMESPACE in start.replace(b"\0", b""):
-            return "gml"
-    return ""
-
-
-def _root_of(start: bytes) -> str:
-    """Return the name of an XML document's first element; empty if it is not there. Refuses what declares entities or leads elsewhere."""
-    parser = expat.ParserCreate()
-    found: list[str] = []
-
-    def refuse_declaration(*_: Any) -> None:
-        raise refused(f"line {parser.CurrentLineNumber}", "the XML declares a document type or entities; such files are not read")
-
-    parser.StartElementHandler = lambda tag, _: found.append(tag.rpartition(":")[2])
-    parser.StartDoctypeDeclHandler = refuse_declaration
-    try:
-        parser.Parse(start)
-    except (expat.ExpatError, LookupError):
-        pass  # the reader of the format has the words for it
-    except AssetFileError:
-        raise
-    except ValueError:
+    if not (start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<") or start.startswith((b"\xff\xfe<", b"\xfe\xff\x00<"))):
         return ""
-    root = found[0] if found else ""
+    root, declaration_line = _root_of(start)
     if root in _ELSEWHERE:
         raise refused("line 1", Reason("leads_elsewhere", {"format": _ELSEWHERE[root]}))
-    return root
+    if root == "kml" or _GML_NAMESPACE not in start.replace(b"\0", b""):
+        return ""
+    if declaration_line:
+        raise refused(f"line {declaration_line}", "the GML declares a document type or entities; such files are not read")
+    return "gml"
+
+
+class _RootFound(Exception):
+    pass
+
+
+def _root_of(start: bytes) -> tuple[str, int]:
+    """Return the name of an XML document's first element, and the line of its document type; empty and 0 where there is none."""
+    parser = expat.ParserCreate()
+    name, line = "", 0
+
+    def begin(tag: str, _: dict[str, str]) -> None:
+        nonlocal name
+        name = tag.rpartition(":")[2]
+        raise _RootFound
+
+    def declare(*_: Any) -> None:
+        nonlocal line
+        line = parser.CurrentLineNumber
+
+    parser.StartElementHandler = begin
+    parser.StartDoctypeDeclHandler = declare
+    with suppress(_RootFound, expat.ExpatError, LookupError, ValueError):  # the reader of the format has the words for what is wrong
+        parser.Parse(start)
+    return name, line
 
 
 @contextmanager

@@ -71,7 +71,7 @@ def _value(gdal: Gdal, feature: Any, index: int, kind: int) -> Any:
     return text.replace("/", "-") if kind in (_DATE, _DATE_TIME) else text
 
 
-def _geometry(gdal: Gdal, feature: Any, system: Any) -> str | None | bool:
+def _geometry(gdal: Gdal, feature: Any, system: Any) -> str | bool | None:
     """Return the geometry as WKB in base 64; None without one; False if it is in another system than its layer."""
     geometry = gdal.OGR_F_GetGeometryRef(feature)
     if not geometry:
