@@ -10,7 +10,8 @@ from inspection.importers.gdal_child.libgdal import Gdal, Unreadable
 MAX_LAYERS = 100
 _NO_GEOMETRY = 100  # wkbNone
 _LITTLE_ENDIAN = 1
-_INTEGER, _REAL, _STRING, _BINARY, _DATE, _DATE_TIME, _INTEGER64 = 0, 2, 4, 8, 9, 11, 12  # OGRFieldType
+_INTEGER, _REAL, _BINARY, _DATE, _DATE_TIME, _INTEGER64 = 0, 2, 8, 9, 11, 12  # OGRFieldType
+_LISTS = (1, 3, 5, 13)
 _BOOLEAN = 1  # OGRFieldSubType
 _HIDDEN_LAYERS = {"blocks"}  # of DXF: the drawings that the entities of "entities" refer to
 
@@ -68,6 +69,8 @@ def _value(gdal: Gdal, feature: Any, index: int, kind: int) -> Any:
     if kind == -1:
         return bool(gdal.OGR_F_GetFieldAsInteger64(feature, index))
     text = _text(gdal.OGR_F_GetFieldAsString(feature, index))
+    if kind in _LISTS:  # "(3:1,1,1)"
+        return text.partition(":")[2].removesuffix(")")
     return text.replace("/", "-") if kind in (_DATE, _DATE_TIME) else text
 
 

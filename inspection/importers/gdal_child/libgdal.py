@@ -74,7 +74,8 @@ class Gdal:
         options = OPEN_OPTIONS.get(self._driver, [])
         data_set = self.GDALOpenEx(path.encode(), flags, _strings([self._driver]), _strings(options), None)
         if not data_set:
-            raise Unreadable(self.failure() or f"it is no {self._driver}")
+            failure = self.failure()
+            raise Unreadable(failure if failure and "not recognized" not in failure else f"it is no {self._driver}")
         return data_set
 
     def failure(self, least: int = FAILURE) -> str:
