@@ -3,13 +3,13 @@
 import base64
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO, Any
-from xml.parsers import expat
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.archive import Archive
+from inspection.importers.assets.gml import check_numbers, root_of
 from inspection.importers.assets.reference_systems import system_of_wkt
 from inspection.importers.assets.wkb import geometry_of_wkb
 from inspection.importers.gdal_process import GdalRefusal, gdal_process
@@ -36,7 +36,7 @@ def format_of_start(start: bytes) -> str:
         return "dxf"
     if not (start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<") or start.startswith((b"\xff\xfe<", b"\xfe\xff\x00<"))):
         return ""
-    root, declaration_line = _root_of(start)
+    root, declaration_line = root_of(start)
     if root in _ELSEWHERE:
         raise refused("line 1", Reason("leads_elsewhere", {"format": _ELSEWHERE[root]}))
     if root == "kml" or _GML_NAMESPACE not in start.replace(b"\0", b""):
@@ -46,35 +46,12 @@ def format_of_start(start: bytes) -> str:
     return "gml"
 
 
-class _RootFound(Exception):
-    pass
-
-
-def _root_of(start: bytes) -> tuple[str, int]:
-    """Return the name of an XML document's first element, and the line of its document type; empty and 0 where there is none."""
-    parser = expat.ParserCreate()
-    name, line = "", 0
-
-    def begin(tag: str, _: dict[str, str]) -> None:
-        nonlocal name
-        name = tag.rpartition(":")[2]
-        raise _RootFound
-
-    def declare(*_: Any) -> None:
-        nonlocal line
-        line = parser.CurrentLineNumber
-
-    parser.StartElementHandler = begin
-    parser.StartDoctypeDeclHandler = declare
-    with suppress(_RootFound, expat.ExpatError, LookupError, ValueError):  # the reader of the format has the words for what is wrong
-        parser.Parse(start)
-    return name, line
-
-
 @contextmanager
 def gdal_file_source(path: Path, file_format: str, layer: str, *, has_system: bool) -> Iterator[Source]:
     """Open a layer of a file. has_system: the user names the reference system. Raises AssetFileError."""
     with path.open("rb") as file:
+        if file_format == "gml":
+            check_numbers(file)
         yield _source(file_format, {f"file.{file_format}": file}, layer, has_system=has_system)
 
 

@@ -31,7 +31,9 @@ def translated(path: Path, driver: str, features: list[dict[str, Any]], *, syste
     gdal.GDALAllRegister()
     for name in ("GDALVectorTranslateOptionsNew", "GDALOpenEx", "GDALVectorTranslate"):
         getattr(gdal, name).restype = ctypes.c_void_p
-    stated = ctypes.c_void_p(gdal.GDALVectorTranslateOptionsNew(_strings(["-f", driver, "-a_srs", system or "NONE", "-nln", "towers"]), None))
+    stated = ctypes.c_void_p(
+        gdal.GDALVectorTranslateOptionsNew(_strings(["-f", driver, "-a_srs", system or "NONE", "-nln", "towers"]), None)
+    )
     opened = ctypes.c_void_p(gdal.GDALOpenEx(str(source).encode(), 4, None, None, None))
     made = ctypes.c_void_p(gdal.GDALVectorTranslate(str(path).encode(), None, 1, (ctypes.c_void_p * 1)(opened), stated, None))
     assert made, f"GDAL does not write {driver}"

@@ -117,5 +117,7 @@ def test_values_of_each_type_are_kept(tmp_path: Path) -> None:
     values: dict[str, Any] = {"whole": 2**40, "number": 0.5, "text": "ü", "yes": True, "nothing": None}
     path = translated(tmp_path / "a.fgb", "FlatGeobuf", [feature({"type": "Point", "coordinates": (8, 47)}, **values)], system="EPSG:4326")
     assert rows_of(path)[0].properties == values
-    lists = dxf(tmp_path / "a.dxf", "0 INSERT 8 TOWERS 2 MAST 10 8 20 47", "0 BLOCK 8 0 2 MAST 10 0 20 0 0 POINT 8 0 10 0 20 0 0 ENDBLK 8 0")
+    lists = dxf(
+        tmp_path / "a.dxf", "0 INSERT 8 TOWERS 2 MAST 10 8 20 47", "0 BLOCK 8 0 2 MAST 10 0 20 0 0 POINT 8 0 10 0 20 0 0 ENDBLK 8 0"
+    )
     assert rows_of(lists, crs="EPSG:4326")[0].properties["BlockScale"] == "1,1,1"
