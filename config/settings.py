@@ -69,7 +69,7 @@ PASSWORD_HASHERS = ["accounts.password_words.Argon2id", "django.contrib.auth.has
 MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's messages need no cookie
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"
-# Debian's GDAL is older than 3.9. GDAL reads terrain files only, from the command line, with its driver named (GTiff, SRTMHGT).
+# Debian's GDAL is older than 3.9. It reads files from elsewhere only in a process with limits (inspection/importers/gdal_process.py).
 SILENCED_SYSTEM_CHECKS = ["gis.W001"]
 
 INSTALLED_APPS = [

@@ -1,4 +1,4 @@
-"""manage.py import_assets: reads assets from GeoJSON, KML, KMZ, a zipped Shapefile, a GeoPackage or CSV, all rows or none."""
+"""manage.py import_assets: reads assets from a file in any format of docs/data-sources.md, all rows or none."""
 
 import json
 from pathlib import Path
@@ -14,8 +14,9 @@ from inspection.services import AssetFileError, UnfinishedMapping, import_assets
 class Command(ImportCommand):
     kind = ImportKind.ASSETS
     help = (
-        "Read assets from a GeoJSON, KML, KMZ, zipped Shapefile, GeoPackage or CSV file. They become one set; the next file of that set "
-        "brings it up to date. --mapping says what the columns mean, as JSON or as the name of a file with it, such as "
+        "Read assets from a GeoJSON, KML, KMZ, zipped Shapefile, GeoPackage, CSV, GML, FlatGeobuf, DXF or zipped File Geodatabase file. "
+        "They become one set; the next file of that set brings it up to date. "
+        "--mapping says what the columns mean, as JSON or as the name of a file with it, such as "
         '{"kind": "tower", "columns": {"ref": "nr", "height": "height_ft"}, "units": {"height": "ft"}}; see docs/data-sources.md. '
         "A set that has been imported before keeps its mapping."
     )

@@ -7,7 +7,7 @@ const BY_NAME = [
   [/\.(osm|pbf|osm\.(gz|bz2)|osm\.json)$/i, "osm"],
   [/\.(tiff?|hgt|hgt\.(gz|zip))$/i, "terrain"],
   [/^[ns]\d{2}[ew]\d{3}\S*\.zip$/i, "terrain"],
-  [/\.(kml|kmz|gpkg|csv|tsv|shp)$/i, "assets"],
+  [/\.(kml|kmz|gpkg|csv|tsv|shp|gml|fgb|dxf|gdb\.zip)$/i, "assets"],
   [/\.(txt|air|openair)$/i, "zones"],
 ];
 

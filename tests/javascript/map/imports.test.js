@@ -49,6 +49,10 @@ test("the kind of a file is known by its name", () => {
     "towers.csv": "assets",
     "lines.kmz": "assets",
     "grid.gpkg": "assets",
+    "grid.gml": "assets",
+    "grid.fgb": "assets",
+    "grid.dxf": "assets",
+    "grid.gdb.zip": "assets",
     "shapes.zip": "assets",
     "czechia.txt": "zones",
   };
