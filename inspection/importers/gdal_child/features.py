@@ -15,11 +15,11 @@ _LISTS = (1, 3, 5, 13)
 _BOOLEAN = 1  # OGRFieldSubType
 _HIDDEN_LAYERS = {"blocks"}  # of DXF: the drawings that the entities of "entities" refer to
 
-Tell = Callable[[Any], None]
+Report = Callable[[Any], None]
 
 
-def tell_features(gdal: Gdal, data_set: Any, wanted: str, most: int, tell: Tell) -> None:
-    """Tell the layer that is wanted, else the first one, and at most `most` of its features. Raises Unreadable."""
+def report_features(gdal: Gdal, data_set: Any, wanted: str, most: int, report: Report) -> None:
+    """Report the layer that is wanted, else the first one, and at most `most` of its features. Raises Unreadable."""
     layers = _layers(gdal, data_set)
     if not layers:
         raise Unreadable(gdal.failure() or "no layer has geometries")
@@ -27,18 +27,18 @@ def tell_features(gdal: Gdal, data_set: Any, wanted: str, most: int, tell: Tell)
     layer = layers[name]
     system = gdal.OGR_L_GetSpatialRef(layer)
     fields = _fields(gdal, layer)
-    tell({"layer": name, "layers": list(layers), "columns": [field for field, _, _ in fields], "wkt": gdal.wkt(system)})
+    report({"layer": name, "layers": list(layers), "columns": [field for field, _, _ in fields], "wkt": gdal.wkt(system)})
     number = 0
     if most:
         while feature := gdal.OGR_L_GetNextFeature(layer):
-            tell([_geometry(gdal, feature, system), *(_value(gdal, feature, index, kind) for _, index, kind in fields)])
+            report([_geometry(gdal, feature, system), *(_value(gdal, feature, index, kind) for _, index, kind in fields)])
             gdal.OGR_F_Destroy(feature)
             number += 1
             if number == most:
                 break
     if failure := gdal.failure():
         raise Unreadable(failure)
-    tell({"features": number})
+    report({"features": number})
 
 
 def _layers(gdal: Gdal, data_set: Any) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """The band of a GeoTIFF: first what the file says of itself, then windows of its values as they are asked for."""
 
 import ctypes
-from collections.abc import Callable
 from ctypes import byref, c_double, c_int
 from typing import Any
 
@@ -10,8 +9,6 @@ from inspection.importers.gdal_child.libgdal import FAILURE, WARNING, Gdal, Unre
 TYPES = {1: ("u1", 1), 2: ("u2", 2), 3: ("i2", 2), 4: ("u4", 4), 5: ("i4", 4), 6: ("f4", 4), 7: ("f8", 8), 14: ("i1", 1)}  # GDALDataType
 _READ = 0
 _EMPTY, _DATA = 0x04, 0x02  # GDAL_DATA_COVERAGE_STATUS_*
-
-Tell = Callable[[Any], None]
 
 
 def described(gdal: Gdal, data_set: Any) -> dict[str, Any]:

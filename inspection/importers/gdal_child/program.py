@@ -7,7 +7,7 @@ import json
 import sys
 from typing import Any
 
-from inspection.importers.gdal_child.features import tell_features
+from inspection.importers.gdal_child.features import report_features
 from inspection.importers.gdal_child.heights import Windows, described
 from inspection.importers.gdal_child.libgdal import Gdal, Unreadable
 from inspection.importers.gdal_child.limits import set_limits
@@ -21,9 +21,9 @@ def main() -> None:
         try:
             _do(gdal, job)
         except Unreadable as error:
-            _tell({"unreadable": str(error).replace(job["path"], "the file")[:300]})
+            _report({"unreadable": str(error).replace(job["path"], "the file")[:300]})
     except MemoryError:
-        _tell({"out_of_memory": True})
+        _report({"out_of_memory": True})
     sys.stdout.buffer.flush()
 
 
@@ -32,22 +32,22 @@ def _do(gdal: Gdal, job: dict[str, Any]) -> None:
     if job["driver"] == "GTiff":
         _serve_windows(gdal, data_set)
     else:
-        tell_features(gdal, data_set, job["layer"], job["most"], _tell)
+        report_features(gdal, data_set, job["layer"], job["most"], _report)
 
 
 def _serve_windows(gdal: Gdal, data_set: Any) -> None:
     """Answer each window that is asked for: a line with the absent parts, then the values."""
-    _tell(described(gdal, data_set))
+    _report(described(gdal, data_set))
     sys.stdout.buffer.flush()
     windows = None
     while line := sys.stdin.buffer.readline():
         windows = windows or Windows(gdal, data_set)
         window = json.loads(line)
         values = windows.values(*window)
-        _tell({"absent": windows.absent(*window)})
+        _report({"absent": windows.absent(*window)})
         sys.stdout.buffer.write(values)
         sys.stdout.buffer.flush()
 
 
-def _tell(answer: Any) -> None:
+def _report(answer: Any) -> None:
     sys.stdout.buffer.write(json.dumps(answer, separators=(",", ":")).encode() + b"\n")
