@@ -3,6 +3,9 @@
 from typing import Any
 
 import django.contrib.auth.admin  # noqa: F401 - registers groups, also if this module is loaded first
+from allauth.account.models import EmailAddress
+from allauth.mfa.models import Authenticator
+from allauth.socialaccount.models import SocialAccount, SocialApp, SocialToken
 from django.contrib import admin, messages
 from django.contrib.auth.models import Group
 from django.db import transaction
@@ -20,6 +23,7 @@ from workspace.api.signed_in import user_of
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Invitation, Job, Organisation, Role, SignInEntry, User
 
 admin.site.unregister(Group)  # permissions follow from the role
+admin.site.unregister([EmailAddress, Authenticator, SocialAccount, SocialApp, SocialToken])  # rows of all organisations
 
 
 class ReadOnlyAdmin(OrganisationScopedAdmin):

@@ -1,14 +1,14 @@
 """From a right password to a session: at once, or after a second factor. Until then the user is not logged in."""
 
 import time
-from dataclasses import dataclass
 from datetime import timedelta
 from typing import Any
 
+from allauth.account.stages import LoginStage, LoginStageController
+from allauth.mfa.webauthn.internal.flows import did_use_passwordless_login
 from django.conf import settings
-from django.contrib.auth import login
 from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
-from django.shortcuts import resolve_url
+from django.urls import reverse
 from django.utils import timezone
 from django.utils.crypto import constant_time_compare
 from django.utils.translation import gettext as _
@@ -18,8 +18,7 @@ from rest_framework.request import Request
 from accounts.second_factors import has_second_factor, is_required_of
 from workspace.api.errors import ApiProblem
 from workspace.models import SignInEntry, SignInOutcome, User
-from workspace.sessions.browser_sessions import note_session
-from workspace.sessions.sign_in_attempts import address_of, is_first_in, network_of, remember
+from workspace.sessions.sign_in_attempts import address_of, is_first_in, network_of
 
 HELD_BACK_INTERVAL_S = 60  # per name and network: many tries do not write many rows
 
@@ -41,49 +40,50 @@ def forget_old_sign_ins() -> int:
     return deleted
 
 
-BACKEND = "workspace.api.authentication.RoleBackend"
-MFA_PENDING = "workspace.mfa_pending"  # in the session: the user who gave the password, the time, and the next address
-MFA_PENDING_S = 10 * 60
+class SecondFactorStage(LoginStage):
+    """After the password: the page that asks for a code or a passkey. Until then the user is not logged in."""
+
+    key = "second_factor"
+    urlname = "mfa_authenticate"
+
+    def handle(self) -> tuple[HttpResponse | None, bool]:
+        return self._page() if self._is_needed() else None, True
+
+    def is_resumable(self, request: HttpRequest) -> bool:
+        """No: the sign-in page stays open for another user."""
+        return False
+
+    def _is_needed(self) -> bool:
+        user = self.login.user
+        return isinstance(user, User) and has_second_factor(user) and not did_use_passwordless_login(self.request, user)
+
+    def _page(self) -> HttpResponse:
+        self.request.session.cycle_key()
+        self.state["of"] = self.login.user.get_session_auth_hash()
+        return HttpResponseRedirect(reverse(self.urlname))
 
 
-@dataclass(frozen=True)
-class HalfIn:
-    """A user who has given the password and not yet the second factor."""
+class SetUpStage(SecondFactorStage):
+    """The page that sets up a second factor, for users who must have one."""
 
-    user: User
-    wanted: str  # the requested address
+    key = "set_up_second_factor"
+    urlname = "second-factor"
 
-
-def let_in(request: HttpRequest, user: User, wanted: str) -> HttpResponse:
-    """Respond after the password: redirect to the requested address, to the code page, or to the page that sets up a second factor."""
-    has_one = has_second_factor(user)
-    if not (has_one or is_required_of(user)):
-        response = HttpResponseRedirect(wanted)
-        sign_in(request, response, user)
-        return response
-    request.session.cycle_key()
-    request.session[MFA_PENDING] = {"user": user.pk, "of": user.get_session_auth_hash(), "at": time.time(), "wanted": wanted}
-    return HttpResponseRedirect(resolve_url("sign-in-code" if has_one else "second-factor"))
+    def _is_needed(self) -> bool:
+        user = self.login.user
+        return isinstance(user, User) and is_required_of(user) and not has_second_factor(user)
 
 
-def user_with_mfa_pending(request: HttpRequest) -> HalfIn | None:
-    """Return the pending login; None after ten minutes, once the password has changed, or if the user may no longer log in."""
-    kept = request.session.get(MFA_PENDING)
-    if kept is None or not 0 <= time.time() - kept["at"] <= MFA_PENDING_S:
+def pending_stage(request: HttpRequest, stage: type[SecondFactorStage]) -> SecondFactorStage | None:
+    """Return the stage of a pending login; None after ten minutes, once the password has changed, or if the user may no longer log in."""
+    found = None if request.user.is_authenticated else LoginStageController.enter(request, stage.key)
+    if found is None:
         return None
-    user = User.objects.select_related("organisation").filter(pk=kept["user"], is_active=True).first()
-    if user is None or not constant_time_compare(kept["of"], user.get_session_auth_hash()):
+    user = found.login.user
+    if not (user.is_active and constant_time_compare(found.state.get("of", ""), user.get_session_auth_hash())):
+        found.abort()
         return None
-    return HalfIn(user, kept["wanted"])
-
-
-def sign_in(request: HttpRequest, response: HttpResponse, user: User) -> None:
-    """Begin the session, write the log, and remember the browser as a trusted device."""
-    request.session.pop(MFA_PENDING, None)
-    login(request, user, backend=BACKEND)
-    note_session(request.session, user, is_act=True, user_agent=request.headers.get("User-Agent", ""))
-    record_sign_in(request, SignInOutcome.SIGNED_IN, user=user)
-    remember(request, response, user.username)
+    return found
 
 
 PROVED_AT = "workspace.proved_at"  # in the session, beside its beginning

@@ -11,17 +11,19 @@ from accounts.pages.password import (
     PasswordChangedPage,
 )
 from accounts.pages.second_factors import CodePage, NewCodesPage, RemovePage, SetUpPage
-from accounts.pages.sign_in import SignInPage, SignOutPage
-from accounts.pages.users import AccountPage, AdministrationPage, InvitationPage
+from accounts.pages.sign_in import PasskeySignIn, SignInPage, SignOutPage
+from accounts.pages.users import AccountPage, AdministrationPage, EmailAddressPage, InvitationPage
 from workspace.pages import OfflinePage, service_worker
 
 urlpatterns = [
     path("service-worker.js", service_worker, name="service-worker"),
     path("offline", OfflinePage.as_view(), name="offline"),
-    path("sign-in", SignInPage.as_view(), name="sign-in"),
-    path("sign-in/code", CodePage.as_view(), name="sign-in-code"),
+    path("sign-in", SignInPage.as_view(), name="account_login"),
+    path("sign-in/passkey", PasskeySignIn.as_view(), name="sign-in-passkey"),
+    path("sign-in/code", CodePage.as_view(), name="mfa_authenticate"),
     path("sign-out", SignOutPage.as_view(), name="sign-out"),
     path("account", AccountPage.as_view(), name="account"),
+    path("email-address/<str:key>", EmailAddressPage.as_view(), name="account_confirm_email"),
     path("administration", AdministrationPage.as_view(), name="administration"),
     path("invitation/<str:token>", InvitationPage.as_view(), name="invitation"),
     path("second-factor", SetUpPage.as_view(), name="second-factor"),

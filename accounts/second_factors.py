@@ -1,15 +1,17 @@
-"""Second factors: setup, codes, recovery codes, removal. Each change is recorded in the history."""
+"""Second factors: setup of an authenticator app, its codes, recovery codes, removal. Each change is recorded in the history."""
 
 import secrets
 from base64 import b32encode
 from datetime import timedelta
 from urllib.parse import quote, urlencode
 
+from allauth.mfa.models import Authenticator
 from cryptography.hazmat.primitives.hashes import SHA1
 from cryptography.hazmat.primitives.twofactor import InvalidToken
 from cryptography.hazmat.primitives.twofactor.hotp import HOTP
 from django.conf import settings
 from django.db import transaction
+from django.db.models import Exists, OuterRef, QuerySet
 from django.utils import timezone
 
 from accounts.services import end_sessions
@@ -97,8 +99,23 @@ class SetUpFirst(Exception):
     """Raised when an administrator without a second factor would require one of all users."""
 
 
-def has_second_factor(user: User) -> bool:
+def has_authenticator_app(user: User) -> bool:
     return SecondFactor.objects.filter(user=user).exists()
+
+
+def passkeys_of(user: User) -> QuerySet[Authenticator]:
+    """Return the user's passkeys, the oldest first."""
+    return Authenticator.objects.filter(user=user, type=Authenticator.Type.WEBAUTHN).order_by("pk")
+
+
+def has_second_factor(user: User) -> bool:
+    return has_authenticator_app(user) or passkeys_of(user).exists()
+
+
+def with_second_factor(users: QuerySet[User]) -> QuerySet[User]:
+    """Add `has_second_factor` to the rows."""
+    passkeys = Authenticator.objects.filter(user=OuterRef("pk"), type=Authenticator.Type.WEBAUTHN)
+    return users.annotate(has_second_factor=Exists(SecondFactor.objects.filter(user=OuterRef("pk"))) | Exists(passkeys))
 
 
 def is_required_of(user: User) -> bool:
@@ -158,16 +175,20 @@ def recovery_codes_left(user: User) -> int:
     return RecoveryCode.objects.filter(second_factor__user=user, used_at=None).count()
 
 
-def take_away(*, user: User, actor: User | None) -> bool:
-    """Remove a second factor. If an administrator resets it, the user's sessions end too. Returns False if there was none."""
+def remove_authenticator_app(*, user: User) -> None:
     with transaction.atomic():
-        deleted, _ = SecondFactor.objects.filter(user=user).delete()
-        if not deleted:
-            return False
-        record(user, actor, "second factor removed" if actor == user else "second factor reset")
-        if actor != user:
+        SecondFactor.objects.filter(user=user).delete()
+        record(user, user, "second factor removed")
+
+
+def reset_second_factors(*, user: User, actor: User | None) -> bool:
+    """Remove the authenticator app and the passkeys of another user, whose sessions end. Returns False if there were none."""
+    with transaction.atomic():
+        deleted = SecondFactor.objects.filter(user=user).delete()[0] + passkeys_of(user).delete()[0]
+        if deleted:
+            record(user, actor, "second factor reset")
             end_sessions(user=user, actor=actor)
-    return True
+    return bool(deleted)
 
 
 def require_second_factor(*, actor: User, required: bool) -> None:

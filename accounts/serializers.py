@@ -3,6 +3,7 @@
 from datetime import datetime
 from typing import Any, ClassVar
 
+from allauth.mfa.models import Authenticator
 from django.conf import settings
 from django.contrib.auth.password_validation import validate_password
 from django.utils import timezone
@@ -10,6 +11,7 @@ from django.utils.translation import gettext as _
 
 from accounts.invitations import MAX_DAYS, state_of
 from accounts.invitations import InvitationState as State
+from accounts.passkeys import MAX_NAME_LENGTH
 from accounts.services import name_of, revision_of_user
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared
@@ -127,7 +129,48 @@ class TokenListSerializer(serializers.Serializer):
 
 
 class ReauthenticationSerializer(serializers.Serializer):
-    password = serializers.CharField(trim_whitespace=False, max_length=4_096)
+    """One of the two."""
+
+    password = serializers.CharField(trim_whitespace=False, max_length=4_096, required=False)
+    passkey = serializers.JSONField(required=False, help_text="the JSON form of the response to `passkey_options`")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if len(attrs) != 1:
+            raise serializers.ValidationError(_("Send a password or a passkey’s response."))
+        return attrs
+
+
+class ReauthenticationMethodsSerializer(serializers.Serializer):
+    has_password = serializers.BooleanField()
+    passkey_options: Declared = serializers.DictField(
+        allow_null=True, help_text="for `navigator.credentials.get`; null for users without a passkey"
+    )
+
+
+class PasskeySerializer(serializers.ModelSerializer):
+    name = serializers.CharField(source="wrap.name")
+
+    class Meta:
+        model = Authenticator
+        fields = ["id", "name", "created_at", "last_used_at"]
+        read_only_fields = fields
+
+
+class PasskeyListSerializer(serializers.Serializer):
+    results = PasskeySerializer(many=True)
+
+
+class PasskeyInputSerializer(serializers.Serializer):
+    name = serializers.CharField(max_length=MAX_NAME_LENGTH)
+    passkey = serializers.JSONField(help_text="the JSON form of the response to the options")
+
+
+class PasskeyOptionsSerializer(serializers.Serializer):
+    options: Declared = serializers.DictField(help_text="for `navigator.credentials.create`, in their JSON form")
+
+
+class VerificationMailSerializer(serializers.Serializer):
+    was_mailed = serializers.BooleanField()
 
 
 class SessionTimesSerializer(serializers.Serializer):

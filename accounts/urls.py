@@ -2,11 +2,15 @@
 
 from django.urls import path
 
-from accounts.views import account, service_accounts, sessions, users
+from accounts.views import account, passkeys, service_accounts, sessions, users
 
 urlpatterns = [
     path("account", account.Account.as_view(), name="api-account"),
     path("account/password", account.AccountPassword.as_view(), name="api-account-password"),
+    path("account/email-address/verification", account.AccountEmailAddress.as_view(), name="api-account-email-address"),
+    path("account/passkeys", passkeys.AccountPasskeys.as_view(), name="api-account-passkeys"),
+    path("account/passkeys/options", passkeys.AccountPasskeyOptions.as_view(), name="api-account-passkey-options"),
+    path("account/passkeys/<int:passkey_id>", passkeys.AccountPasskey.as_view(), name="api-account-passkey"),
     path("account/sign-out-everywhere", sessions.AccountSessions.as_view(), name="api-account-sessions"),
     path("account/session", sessions.ThisSession.as_view(), name="api-account-this-session"),
     path("account/proof", sessions.Reauthentication.as_view(), name="api-account-proof"),

@@ -8,6 +8,7 @@ from typing import Any
 
 import dj_database_url
 
+from config import sign_in_settings
 from config.environment import entries, flag, languages, log_settings, mail_settings, mebibytes, number, secret
 from config.openapi_settings import openapi_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
@@ -85,6 +86,7 @@ INSTALLED_APPS = [
     "rest_framework",
     "drf_spectacular",
     "drf_spectacular_sidecar",
+    *sign_in_settings.APPS,
     "workspace",
     "accounts",
     "inspection",
@@ -100,6 +102,7 @@ MIDDLEWARE = [
     "django.middleware.common.CommonMiddleware",
     "django.middleware.csrf.CsrfViewMiddleware",
     "django.contrib.auth.middleware.AuthenticationMiddleware",
+    sign_in_settings.MIDDLEWARE,
     "workspace.sessions.preferences.PreferencesMiddleware",
     "workspace.api.query_parameters.KnownQueryParameters",
     "django.contrib.messages.middleware.MessageMiddleware",
@@ -171,10 +174,7 @@ AUTH_PASSWORD_VALIDATORS = [
 ]
 PASSWORD_WORDS = entries("SPANWISE_PASSWORD_WORDS", "")  # forbidden in passwords, beside those of the trade
 REQUIRES_SECOND_FACTOR = flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # for all users, whatever their organisation requires
-LOGIN_URL = "sign-in"
-LOGIN_REDIRECT_URL = "missions"
-LOGOUT_REDIRECT_URL = "sign-in"
-
+globals().update(sign_in_settings.sign_in_settings())
 PASSWORD_RESET_TIMEOUT = 3_600  # seconds that the link of a mail works
 SIGN_IN_LOG_DAYS = int(number("SPANWISE_SIGN_IN_LOG_DAYS", 180))
 

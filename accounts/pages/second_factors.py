@@ -2,7 +2,7 @@
 
 from typing import Any
 
-import segno
+import qrcode
 from django import forms
 from django.contrib.auth.mixins import AccessMixin, LoginRequiredMixin
 from django.http import Http404, HttpRequest, HttpResponse, HttpResponseRedirect
@@ -12,13 +12,15 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy, ngettext
 from django.views.decorators.cache import never_cache
 from django.views.generic import FormView
+from qrcode.image.svg import SvgPathFillImage
 
 from accounts import second_factors
-from accounts.login import record_sign_in, sign_in, user_with_mfa_pending
-from accounts.second_factors import TooManyCodes, WrongCode, address_for_apps, new_seed
+from accounts.login import SecondFactorStage, SetUpStage, pending_stage, record_sign_in
+from accounts.passkeys import PasskeyRefused, confirm_with_passkey, request_options
+from accounts.second_factors import TooManyCodes, WrongCode, address_for_apps, new_seed, passkeys_of
 from workspace.api.signed_in import SignedInPageRequest
 from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
-from workspace.models import SignInOutcome, User
+from workspace.models import SecondFactor, SignInOutcome, User
 from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempts, count_attempt
 
 SEED = "workspace.new_seed"  # in the session, encrypted, until an app has produced a code
@@ -64,30 +66,48 @@ def words_of(error: Exception) -> str:
 
 @method_decorator(never_cache, name="dispatch")
 class CodePage(FormView):
-    """Asks for the code after the password. Without a password in this session it redirects to the login."""
+    """Asks for a code or a passkey after the password. Without a password in this session it redirects to the login."""
 
     template_name = "account/sign_in_code.html"
     form_class = CodeForm
 
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
-        mfa_pending = user_with_mfa_pending(request)
-        if mfa_pending is None or not second_factors.has_second_factor(mfa_pending.user):
-            return HttpResponseRedirect(resolve_url("sign-in"))
-        self.mfa_pending = mfa_pending
+        stage = pending_stage(request, SecondFactorStage)
+        if stage is None:
+            return HttpResponseRedirect(resolve_url("account_login"))
+        self.stage, self.person = stage, stage.login.user
         return super().dispatch(request, *args, **kwargs)
 
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        has_passkey = passkeys_of(self.person).exists()
+        return super().get_context_data(**kwargs) | {
+            "has_app": second_factors.has_authenticator_app(self.person),
+            "passkey_options": request_options(self.person) if has_passkey else None,
+        }
+
+    def post(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponse:
+        return self._with_passkey(request.POST["credential"]) if "credential" in request.POST else super().post(request, *args, **kwargs)
+
     def form_valid(self, form: CodeForm) -> HttpResponse:
-        user = self.mfa_pending.user
         try:
-            second_factors.try_code(user=user, code=form.cleaned_data["code"])
+            second_factors.try_code(user=self.person, code=form.cleaned_data["code"])
+        except SecondFactor.DoesNotExist:
+            return HttpResponseRedirect(resolve_url("account_login"))
         except (WrongCode, TooManyCodes) as error:
             outcome = SignInOutcome.HELD_BACK if isinstance(error, TooManyCodes) else SignInOutcome.WRONG_CODE
-            record_sign_in(self.request, outcome, user=user, name=user.username)
+            record_sign_in(self.request, outcome, user=self.person, name=self.person.username)
             form.add_error("code", words_of(error))
             return self.form_invalid(form)
-        response = HttpResponseRedirect(self.mfa_pending.wanted)
-        sign_in(self.request, response, user)
-        return response
+        return self.stage.exit()
+
+    def _with_passkey(self, credential: str) -> HttpResponse:
+        try:
+            confirm_with_passkey(user=self.person, credential=credential)
+        except PasskeyRefused:
+            record_sign_in(self.request, SignInOutcome.WRONG_CODE, user=self.person)
+            fault = _("This passkey is not known here, or the page was open for too long. Try again.")
+            return self.render_to_response(self.get_context_data(form=CodeForm(), fault=fault))
+        return self.stage.exit()
 
 
 @method_decorator(never_cache, name="dispatch")
@@ -97,30 +117,30 @@ class SetUpPage(AccessMixin, FormView):
     template_name = "account/second_factor.html"
 
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
-        self.mfa_pending = None if request.user.is_authenticated else user_with_mfa_pending(request)
-        if self.mfa_pending is not None:
-            self.person = self.mfa_pending.user
+        self.stage = pending_stage(request, SetUpStage)
+        if self.stage is not None:
+            self.person = self.stage.login.user
         elif isinstance(request.user, User):
             self.person = request.user
         else:
             return self.handle_no_permission()
-        if second_factors.has_second_factor(self.person):
-            return HttpResponseRedirect(resolve_url("sign-in-code" if self.mfa_pending else "second-factor-codes"))
+        if second_factors.has_authenticator_app(self.person):
+            return HttpResponseRedirect(resolve_url("account_login" if self.stage else "second-factor-codes"))
         return super().dispatch(request, *args, **kwargs)
 
     def get_form_class(self) -> type[CodeForm]:
-        return CodeForm if self.mfa_pending else CodeAndPasswordForm
+        return CodeForm if self.stage else CodeAndPasswordForm
 
     def get_form_kwargs(self) -> dict[str, Any]:
-        return super().get_form_kwargs() | ({} if self.mfa_pending else {"user": self.person})
+        return super().get_form_kwargs() | ({} if self.stage else {"user": self.person})
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         text = second_factors.seed_text(self._seed())
         address = address_for_apps(text, self.person.username)
         return super().get_context_data(**kwargs) | {
             "person": self.person,
-            "is_required": self.mfa_pending is not None,
-            "qr_code": segno.make(address, error="m", micro=False).svg_inline(border=3, light="#fff", omitsize=True),
+            "is_required": self.stage is not None,
+            "qr_code": _drawn(address),
             "address": address,
             "seed_groups": [text[place : place + 4] for place in range(0, len(text), 4)],
         }
@@ -132,9 +152,11 @@ class SetUpPage(AccessMixin, FormView):
             form.add_error("code", _("This is not the app’s code of now. Wait for the next one. The telephone’s clock has to be right."))
             return self.form_invalid(form)
         del self.request.session[SEED]
-        response = show_codes(self.request, codes, self.mfa_pending.wanted if self.mfa_pending else resolve_url("account"))
-        if self.mfa_pending:
-            sign_in(self.request, response, self.person)
+        if self.stage is None:
+            return show_codes(self.request, codes, resolve_url("account"))
+        signed_in = self.stage.exit()
+        response = show_codes(self.request, codes, signed_in.headers["Location"])
+        response.cookies.update(signed_in.cookies)  # that of a trusted device
         return response
 
     def _seed(self) -> bytes:
@@ -177,7 +199,7 @@ class _OwnCodePage(LoginRequiredMixin, FormView):
         raise NotImplementedError
 
     def _or_404(self) -> None:
-        if not second_factors.has_second_factor(self.request.user):
+        if not second_factors.has_authenticator_app(self.request.user):
             raise Http404
 
 
@@ -204,8 +226,15 @@ class RemovePage(_OwnCodePage):
         return super().get_context_data(**kwargs) | {"is_required": second_factors.is_required_of(self.request.user)}
 
     def done(self, user: User) -> HttpResponse:
-        second_factors.take_away(user=user, actor=user)
+        second_factors.remove_authenticator_app(user=user)
         return HttpResponseRedirect(resolve_url("account"))
+
+
+def _drawn(address: str) -> str:
+    """Return the QR code as SVG."""
+    code = qrcode.QRCode(error_correction=qrcode.ERROR_CORRECT_M, border=3, image_factory=SvgPathFillImage)
+    code.add_data(address)
+    return code.make_image().to_string(encoding="unicode")
 
 
 def show_codes(request: HttpRequest, codes: list[str], go_on: str) -> HttpResponse:

@@ -1,72 +1,74 @@
-"""Login with limits, and logout."""
+"""Login by password or passkey, and logout."""
 
 from typing import Any
 
+from allauth.account.forms import LoginForm
+from allauth.account.internal.flows.login import perform_login
+from allauth.account.models import Login
+from allauth.account.utils import get_next_redirect_url
+from allauth.account.views import LoginView
+from allauth.mfa.base.internal.flows import post_authentication
 from django.contrib.auth import views
-from django.contrib.auth.forms import AuthenticationForm
-from django.core.exceptions import ValidationError
-from django.http import HttpRequest, HttpResponse
+from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.utils.decorators import method_decorator
 from django.utils.translation import gettext as _
-from django.utils.translation import ngettext
+from django.views.decorators.cache import never_cache
+from django.views.generic import View
 
-from accounts.login import let_in, record_sign_in
+from accounts.email_addresses import user_name_of
+from accounts.login import record_sign_in
+from accounts.passkeys import PasskeyRefused, passkey_of_response, request_options
 from workspace.models import SignInOutcome, User
-from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, mark_of, try_to_sign_in
+from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, count_attempt, network_of
+
+PASSKEY_CHALLENGES = 200  # of one network in a quarter of an hour: each makes a session
 
 
-class SignInForm(AuthenticationForm):
-    """Django's form, with limits on wrong tries and one message that does not reveal which part was wrong."""
+class SignInForm(LoginForm):
+    """The form of user name, or e-mail address, and password."""
 
-    request: HttpRequest  # always set by the page
-
-    def clean(self) -> dict[str, Any]:
-        name = self.cleaned_data.get("username", "")
-        request = self.request
-        if not (name and self.cleaned_data.get("password")):
-            return super().clean()
-        try:
-            this_try = try_to_sign_in(name=name, address=address_of(request), trusted_device=mark_of(request, name))
-        except TooManyAttempts as held:
-            record_sign_in(request, SignInOutcome.HELD_BACK, name=name)
-            raise ValidationError(_held_back(held), code="locked") from held
-        try:
-            cleaned = super().clean()
-        except ValidationError as error:
-            record_sign_in(request, SignInOutcome.WRONG, name=name)
-            raise ValidationError(_wrong(this_try.left), code="invalid_login") from error
-        this_try.succeeded()
-        return cleaned
+    def clean_login(self) -> str:
+        return user_name_of(super().clean_login())
 
 
-def _held_back(held: TooManyAttempts) -> str:
-    if held.name_is_slow:
-        return _(
-            "Somebody is guessing the password of this name from many places. Use a browser in which you have signed in before, "
-            "ask for a link by mail, or try again in {seconds} s."
-        ).format(seconds=held.wait_s)
-    return _("Too many wrong tries. Wait 15 min, then try again.")
-
-
-def _wrong(tries_left: int | None) -> str:
-    if tries_left is None:
-        return _("User name or password is wrong.")
-    if tries_left == 0:
-        return _("User name or password is wrong. No tries left for 15 min.")
-    words = ngettext(
-        "User name or password is wrong. {count} try left for 15 min.",
-        "User name or password is wrong. {count} tries left for 15 min.",
-        tries_left,
-    )
-    return words.format(count=tries_left)
-
-
-class SignInPage(views.LoginView):
+class SignInPage(LoginView):
     template_name = "sign_in.html"
-    authentication_form = SignInForm
-    redirect_authenticated_user = True
 
-    def form_valid(self, form: AuthenticationForm) -> HttpResponse:
-        return let_in(self.request, form.get_user(), self.get_success_url())
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"next": self.get_next_url() or ""}
+
+
+@method_decorator(never_cache, name="dispatch")
+class PasskeySignIn(View):
+    """GET returns a challenge as JSON; POST takes its signature from the form of the sign-in page."""
+
+    def get(self, request: HttpRequest) -> HttpResponse:
+        try:
+            count_attempt("passkey challenges to", network_of(address_of(request)), most=PASSKEY_CHALLENGES)
+        except TooManyAttempts as held:
+            return JsonResponse(
+                {"message": _("Too many tries. Wait 15 min, then try again.")}, status=429, headers={"Retry-After": held.wait_s}
+            )
+        return JsonResponse(request_options(None))
+
+    def post(self, request: HttpRequest) -> HttpResponse:
+        try:
+            passkey = passkey_of_response(request.POST.get("credential", ""))
+        except PasskeyRefused:
+            record_sign_in(request, SignInOutcome.WRONG)
+            return _refused(request)
+        post_authentication(request, passkey, passwordless=True)
+        return perform_login(request, Login(user=passkey.user, redirect_url=get_next_redirect_url(request)))
+
+
+def _refused(request: HttpRequest) -> HttpResponse:
+    """Return the sign-in page that says so."""
+    page = SignInPage()
+    page.setup(request)
+    form = page.get_form_class()(request=request)
+    return page.render_to_response(
+        page.get_context_data(form=form, fault=_("This passkey is not known here, or the page was open for too long. Try again."))
+    )
 
 
 class SignOutPage(views.LogoutView):

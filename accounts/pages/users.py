@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from allauth.account.internal.flows.login import perform_login
+from allauth.account.models import Login
 from django.conf import settings
 from django.contrib.auth.forms import BaseUserCreationForm, UserCreationForm
 from django.contrib.auth.mixins import UserPassesTestMixin
@@ -11,11 +13,11 @@ from django.shortcuts import render, resolve_url
 from django.utils.decorators import method_decorator
 from django.utils.translation import gettext as _
 from django.views.decorators.cache import never_cache
-from django.views.generic import FormView
+from django.views.generic import FormView, TemplateView
 
+from accounts.email_addresses import AddressTaken, LinkInvalid, is_verified, user_of_link, verify
 from accounts.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
-from accounts.login import let_in
-from accounts.second_factors import has_second_factor, is_required_of, recovery_codes_left
+from accounts.second_factors import has_authenticator_app, is_required_of, recovery_codes_left
 from workspace.models import SCOPES_OF_ROLE, User
 from workspace.pages import SignedInPage
 from workspace.sessions.preferences import TIME_ZONES
@@ -27,14 +29,39 @@ class AccountPage(SignedInPage):
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
-        has_one = has_second_factor(user)
+        has_one = has_authenticator_app(user)
         return super().get_context_data(**kwargs) | {
-            "has_second_factor": has_one,
+            "has_authenticator_app": has_one,
             "second_factor_is_required": is_required_of(user),
             "codes_left": recovery_codes_left(user) if has_one else 0,
+            "address_is_verified": is_verified(user),
+            "mail_leaves_here": mail_leaves_here(),
             "languages": settings.LANGUAGES,
             "token_scopes": [(scope.value, scope.label) for scope in SCOPES_OF_ROLE[user.role]],
         }
+
+
+@method_decorator(never_cache, name="dispatch")
+class EmailAddressPage(TemplateView):
+    """The page behind a mailed link. Its button verifies the address: programs that read mail open links, too."""
+
+    template_name = "account/email_address.html"
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        try:
+            person = user_of_link(kwargs["key"])
+        except LinkInvalid:
+            person = None
+        return super().get_context_data(**kwargs) | {"person": person}
+
+    def post(self, request: HttpRequest, key: str) -> HttpResponse:
+        try:
+            verify(request=request, key=key)
+        except LinkInvalid:
+            return self.get(request, key=key)
+        except AddressTaken:
+            return self.render_to_response(self.get_context_data(key=key) | {"is_taken": True})
+        return self.render_to_response({"is_verified": True})
 
 
 class AdministrationPage(UserPassesTestMixin, SignedInPage):
@@ -93,7 +120,7 @@ class InvitationPage(FormView):
         except IntegrityError:  # two users chose the same name concurrently
             form.add_error("username", _("Somebody has this name already."))
             return self.form_invalid(form)
-        return let_in(self.request, user, resolve_url("missions"))
+        return perform_login(self.request, Login(user=user, redirect_url=resolve_url("missions")))
 
     def _gone(self) -> HttpResponse:
         return render(self.request, "account/invitation_gone.html", status=410)

@@ -8,6 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import services
+from accounts.email_addresses import send_verification
 from accounts.login import PASSWORD_NEEDED, record_sign_in, require_reauthentication
 from accounts.serializers import (
     AccountChangeSerializer,
@@ -19,6 +20,7 @@ from accounts.serializers import (
     TokenInputSerializer,
     TokenListSerializer,
     TokenSerializer,
+    VerificationMailSerializer,
     with_secret,
 )
 from workspace.api.errors import ApiProblem
@@ -61,6 +63,26 @@ class Account(APIView):
         body = AccountChangeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         return Response(AccountSerializer(services.change_account(user=request.user, **body.validated_data)).data)
+
+
+class AccountEmailAddress(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="mail_verification_link",
+        summary="Have a link mailed that verifies one's e-mail address",
+        description="Five in a quarter of an hour. Not with a token.",
+        request=None,
+        responses=VerificationMailSerializer,
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        try:
+            count_attempt("verification mails to", str(request.user.pk))
+        except TooManyAttempts as held:
+            message = _("Too many mails were asked for. Wait 15 min, then try again.")
+            raise ApiProblem(429, "held_back", message, retry_after_s=held.wait_s) from held
+        return Response({"was_mailed": send_verification(request=request, user=request.user)})
 
 
 class AccountPassword(APIView):

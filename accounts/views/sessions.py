@@ -9,8 +9,17 @@ from rest_framework.views import APIView
 
 from accounts import services
 from accounts.login import PASSWORD_NEEDED, note_reauthentication, require_reauthentication
-from accounts.serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ReauthenticationSerializer, SessionTimesSerializer
+from accounts.passkeys import request_options
+from accounts.second_factors import passkeys_of
+from accounts.serializers import (
+    BrowserSessionListSerializer,
+    BrowserSessionSerializer,
+    ReauthenticationMethodsSerializer,
+    ReauthenticationSerializer,
+    SessionTimesSerializer,
+)
 from accounts.views.account import check_password
+from accounts.views.passkeys import check_passkey
 from workspace.api.errors import ApiProblem
 from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
 from workspace.api.signed_in import SignedInRequest
@@ -56,16 +65,32 @@ class Reauthentication(APIView):
     permission_classes = [InTheBrowserAlone]
 
     @extend_schema(
+        operation_id="get_reauthentication_methods",
+        summary="How to re-authenticate",
+        description="Makes a challenge for passkeys, which this session keeps. Not with a token.",
+        responses=ReauthenticationMethodsSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        if request.auth is not None:
+            raise ApiProblem(404, "not_found", _("There is no session."))
+        user = request.user
+        has_password = user.has_usable_password()
+        return Response({"has_password": has_password, "passkey_options": request_options(user) if passkeys_of(user).exists() else None})
+
+    @extend_schema(
         operation_id="prove_oneself",
         summary="Re-authenticate",
-        description="For 15 min this session may then make tokens and end sessions. Five tries in a quarter of an hour.",
+        description="For 15 min this session may then make tokens and passkeys, and end sessions. Five tries in a quarter of an hour.",
         request=ReauthenticationSerializer,
-        responses={204: OpenApiResponse(description="It is the password.")},
+        responses={204: OpenApiResponse(description="It is the password, or one of the user’s passkeys.")},
     )
     def post(self, request: SignedInRequest) -> Response:
         body = ReauthenticationSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        check_password(request, "password", body.validated_data["password"])
+        if "passkey" in body.validated_data:
+            check_passkey(request, body.validated_data["passkey"])
+        else:
+            check_password(request, "password", body.validated_data["password"])
         note_reauthentication(request.session)
         return Response(status=204)
 

@@ -4,7 +4,7 @@ from datetime import timedelta
 from typing import Any
 
 from django.conf import settings
-from django.db.models import Count, Exists, OuterRef, Q, QuerySet
+from django.db.models import Count, Q, QuerySet
 from django.http import Http404
 from django.urls import reverse
 from django.utils import timezone
@@ -36,7 +36,7 @@ from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS,
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import WholeNumber
-from workspace.models import Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
+from workspace.models import Invitation, Role, SignInEntry, SignInOutcome, User
 
 HERE_WITHIN = timedelta(minutes=5)
 DAYS = WholeNumber("days", "only the last so many days", maximum=99_999)
@@ -44,9 +44,8 @@ DAYS = WholeNumber("days", "only the last so many days", maximum=99_999)
 
 def _users(request: SignedInRequest) -> QuerySet[User]:
     valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
-    return User.objects.filter(organisation_id=request.user.organisation_id, is_service=False).annotate(
-        valid_tokens=Count("api_tokens", filter=valid), has_second_factor=Exists(SecondFactor.objects.filter(user=OuterRef("pk")))
-    )
+    own = User.objects.filter(organisation_id=request.user.organisation_id, is_service=False)
+    return second_factors.with_second_factor(own).annotate(valid_tokens=Count("api_tokens", filter=valid))
 
 
 def _user_of_id(request: SignedInRequest, user_id: int) -> User:
@@ -177,7 +176,7 @@ class UserSecondFactor(APIView):
             raise ApiProblem(409, "own_second_factor", _("Your own is on the page of your account, where a code is asked for."))
         if not may_change(request.user, person):
             raise ApiProblem(403, "operators_alone", str(OperatorsAlone()))
-        second_factors.take_away(user=person, actor=request.user)
+        second_factors.reset_second_factors(user=person, actor=request.user)
         return Response(status=204)
 
 

@@ -123,7 +123,7 @@ class Operator(FastHttpUser):
         page = self.client.get("/sign-in", name="sign-in page")
         if page.status_code != 200:
             return False
-        form = {"username": self.name, "password": PASSWORD, "csrfmiddlewaretoken": self._csrf_token()}
+        form = {"login": self.name, "password": PASSWORD, "csrfmiddlewaretoken": self._csrf_token()}
         headers = {"Referer": f"{self.host}/sign-in"}
         with self.client.post("/sign-in", data=form, headers=headers, name="sign in", allow_redirects=False, catch_response=True) as answer:
             self.is_in = answer.status_code == 302

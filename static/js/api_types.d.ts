@@ -3443,6 +3443,28 @@ export interface components {
                 [key: string]: unknown;
             };
         };
+        Passkey: {
+            readonly id: number;
+            name: string;
+            /** Format: date-time */
+            readonly created_at: string;
+            /** Format: date-time */
+            readonly last_used_at: string | null;
+        };
+        PasskeyInputRequest: {
+            name: string;
+            /** @description the JSON form of the response to the options */
+            passkey: unknown;
+        };
+        PasskeyList: {
+            results: components["schemas"]["Passkey"][];
+        };
+        PasskeyOptions: {
+            /** @description for `navigator.credentials.create`, in their JSON form */
+            options: {
+                [key: string]: unknown;
+            };
+        };
         PasswordChangeRequest: {
             old_password: string;
             new_password: string;
@@ -4452,8 +4474,18 @@ export interface components {
             /** @description kept in the mission's history */
             reason: string;
         };
+        ReauthenticationMethods: {
+            has_password: boolean;
+            /** @description for `navigator.credentials.get`; null for users without a passkey */
+            passkey_options: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /** @description One of the two. */
         ReauthenticationRequest: {
-            password: string;
+            password?: string;
+            /** @description the JSON form of the response to `passkey_options` */
+            passkey?: unknown;
         };
         RecordApproval: {
             /** Format: uuid */
@@ -7357,6 +7389,9 @@ export interface components {
             results: components["schemas"]["VehicleText"][];
             next: string | null;
         };
+        VerificationMail: {
+            was_mailed: boolean;
+        };
         WaitingCommand: {
             /** Format: uuid */
             id: string;
@@ -8102,6 +8137,10 @@ export type OpenTargetReasonRequest = components['schemas']['OpenTargetReasonReq
 export type Origin = components['schemas']['Origin'];
 export type OriginEnum = components['schemas']['OriginEnum'];
 export type ParametersRequest = components['schemas']['ParametersRequest'];
+export type Passkey = components['schemas']['Passkey'];
+export type PasskeyInputRequest = components['schemas']['PasskeyInputRequest'];
+export type PasskeyList = components['schemas']['PasskeyList'];
+export type PasskeyOptions = components['schemas']['PasskeyOptions'];
 export type PasswordChangeRequest = components['schemas']['PasswordChangeRequest'];
 export type PatchedAccountChangeRequest = components['schemas']['PatchedAccountChangeRequest'];
 export type PatchedAssetInputRequest = components['schemas']['PatchedAssetInputRequest'];
@@ -8163,6 +8202,7 @@ export type ReachabilityReasonCodeEnum = components['schemas']['ReachabilityReas
 export type ReachableAssets = components['schemas']['ReachableAssets'];
 export type ReachableFlight = components['schemas']['ReachableFlight'];
 export type ReasonInputRequest = components['schemas']['ReasonInputRequest'];
+export type ReauthenticationMethods = components['schemas']['ReauthenticationMethods'];
 export type ReauthenticationRequest = components['schemas']['ReauthenticationRequest'];
 export type RecordApproval = components['schemas']['RecordApproval'];
 export type RecordCollection = components['schemas']['RecordCollection'];
@@ -8343,6 +8383,7 @@ export type UserPage = components['schemas']['UserPage'];
 export type VehicleReport = components['schemas']['VehicleReport'];
 export type VehicleText = components['schemas']['VehicleText'];
 export type VehicleTextPage = components['schemas']['VehicleTextPage'];
+export type VerificationMail = components['schemas']['VerificationMail'];
 export type WaitingCommand = components['schemas']['WaitingCommand'];
 export type WaitingStart = components['schemas']['WaitingStart'];
 export type Warning = components['schemas']['Warning'];

@@ -41,7 +41,7 @@ def shown_recovery_codes(page: str) -> list[str]:
 
 def type_password(client: Client, user: User, password: str) -> str:
     """Where the door leads to then."""
-    return str(client.post("/sign-in", {"username": user.username, "password": password}).headers.get("Location", ""))
+    return str(client.post("/sign-in", {"login": user.username, "password": password}).headers.get("Location", ""))
 
 
 def is_in(client: Client) -> bool:

@@ -182,7 +182,7 @@ def test_it_changes_no_people_sessions_tokens_and_rules(client: Client) -> None:
         for method in set(methods) & {"post", "put", "patch", "delete"}:
             if path.startswith(PEOPLE):
                 address = path.replace("{", "").replace("}", "")
-                for name in ("user_id", "invitation_id", "account_id", "token_id", "session_id"):
+                for name in ("user_id", "invitation_id", "account_id", "token_id", "session_id", "passkey_id"):
                     address = address.replace(name, "1")
                 assert send(asks, method, address).status_code == 403, (method, path)
                 walked += 1

@@ -85,8 +85,8 @@ def _a_day() -> dict[str, str]:
     secrets = {"password": PASSWORD, "wrong password": "not-my-word-77", "secret key": settings.SECRET_KEY}
     User.objects.create_user("vera", "vera@example.org", PASSWORD, role=Role.ADMINISTRATOR)
     client = Client(raise_request_exception=False)
-    client.post("/sign-in", {"username": "vera", "password": secrets["wrong password"]})
-    client.post("/sign-in", {"username": "vera", "password": PASSWORD})
+    client.post("/sign-in", {"login": "vera", "password": secrets["wrong password"]})
+    client.post("/sign-in", {"login": "vera", "password": PASSWORD})
     secrets["session"] = client.cookies[settings.SESSION_COOKIE_NAME].value
     secrets["csrf cookie"] = client.cookies["csrftoken"].value if "csrftoken" in client.cookies else "no-cookie-for-forms"
 

@@ -1,11 +1,11 @@
-"""Removes a user's second factor: manage.py reset_second_factor USER. Needed for the last administrator, whom no other can help."""
+"""Removes a user's authenticator app and passkeys, also of the last administrator: manage.py reset_second_factor USER."""
 
 from argparse import ArgumentParser
 from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
-from accounts.second_factors import take_away
+from accounts.second_factors import reset_second_factors
 from workspace.models import User
 
 
@@ -20,6 +20,6 @@ class Command(BaseCommand):
             user = User.objects.get(username=options["user"])
         except User.DoesNotExist as error:
             raise CommandError(f"nobody is called {options['user']}") from error
-        if not take_away(user=user, actor=None):
+        if not reset_second_factors(user=user, actor=None):
             raise CommandError(f"{user} has no second factor")
         self.stdout.write(f"{user} signs in with the password alone, or sets up another second factor where the organisation asks for one.")

@@ -133,7 +133,7 @@ class Browser(Client):
         form = FORM_TOKEN.search(page.content)
         if form is None:
             raise GaveUp("no form to sign in with")
-        body = {"csrfmiddlewaretoken": form[1].decode(), "username": self.name, "password": self.site.password, "next": "/"}
+        body = {"csrfmiddlewaretoken": form[1].decode(), "login": self.name, "password": self.site.password, "next": "/"}
         headers = {"Referer": f"{self.host}/sign-in"}
         with self.client.post("/sign-in", name="sign in", data=body, headers=headers, catch_response=True, allow_redirects=False) as answer:
             if answer.status_code == 302:

@@ -1,20 +1,21 @@
 /** The account: each preference is kept as soon as it is chosen; the password, tokens and sign-ins. */
 
-import { get, patch } from "../api.js";
-import { byId, icon } from "../dom.js";
+import { get, patch, post } from "../api.js";
+import { byId, h, icon } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
 import { notify, settle } from "../page/problem.js";
 import { chooseTheme, chosenTheme, onTheme } from "../page/theme.js";
 import { locale, t } from "../text.js";
 import { heightText, lengthText, speedText } from "../units.js";
 import { mountJobs } from "./jobs.js";
+import { mountPasskeys } from "./passkeys.js";
 import { mountPassword } from "./password.js";
 import { mountSessions } from "./sessions.js";
 import { signInRow } from "./sign_in_row.js";
 import { mountTokens } from "./tokens.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { SignInPage } from "../api_types.d.ts" */
+/** @import { SignInPage, VerificationMail } from "../api_types.d.ts" */
 
 const WORKS_AFTER_LOADING = ["language", "time_zone", "units"];
 const SAMPLE = { length_m: 12_400, height_m: 60, speed_mps: 12 };
@@ -82,8 +83,22 @@ showZone();
 
 const tokens = mountTokens({ notify, settle });
 mountPassword({ notify, settle }, () => void tokens.load());
+const passkeys = mountPasskeys({ notify, settle });
 const sessions = mountSessions({ notify, settle });
 const jobs = mountJobs({ notify, settle });
+
+document.getElementById("verify-address")?.addEventListener("click", async () => {
+  try {
+    const { data } = /** @type {Answer<VerificationMail>} */ (await post("/account/email-address/verification"));
+    settle();
+    const words = data.was_mailed
+      ? t("The link is mailed. It works for three days.")
+      : t("The mail could not be sent.");
+    byId("verification").replaceChildren(h("p", { class: "caption", role: "status" }, words));
+  } catch (error) {
+    notify(t("The mail could not be sent."), error);
+  }
+});
 
 /** @type {string | null} */
 let nextSignIns = null;
@@ -99,7 +114,7 @@ async function loadSignIns(address = "/account/sign-ins?limit=5") {
 }
 
 byId("more-sign-ins").addEventListener("click", () => nextSignIns && loadSignIns(nextSignIns));
-Promise.all([tokens.load(), jobs.load(), sessions.load(), loadSignIns()]).then(() => {
+Promise.all([tokens.load(), jobs.load(), sessions.load(), passkeys.load(), loadSignIns()]).then(() => {
   document.documentElement.dataset.loaded = "true";
   if (location.hash) document.getElementById(location.hash.slice(1))?.focus({ preventScroll: false });
 });

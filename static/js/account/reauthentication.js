@@ -1,12 +1,16 @@
-/** Reauthentication: asks for the password again, then continues the act. */
+/** Reauthentication: asks for the password or a passkey, then continues the act. */
 
-import { ApiError, post } from "../api.js";
+import { ApiError, get, post } from "../api.js";
 import { h, icon } from "../dom.js";
 import { open } from "../page/keyboard.js";
 import { t } from "../text.js";
+import { passkeyFault, passkeysWork, usePasskey } from "./webauthn.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { ReauthenticationMethods } from "../api_types.d.ts" */
 
 /**
- * Send a request, and repeat it after a password confirmation if the server requires one. Null where the user cancels.
+ * Send a request, and repeat it after a reauthentication if the server requires one. Null where the user cancels.
  *
  * @template Result
  * @param {() => Promise<Result>} send
@@ -18,11 +22,12 @@ export async function proved(send) {
   } catch (error) {
     if (!(error instanceof ApiError) || error.code !== "password_needed") throw error;
   }
-  return (await askForPassword()) ? send() : null;
+  const { data } = /** @type {Answer<ReauthenticationMethods>} */ (await get("/account/proof"));
+  return (await confirm(data)) ? send() : null;
 }
 
-/** @returns {Promise<boolean>} */
-function askForPassword() {
+/** @param {ReauthenticationMethods} methods @returns {Promise<boolean>} */
+function confirm({ has_password, passkey_options }) {
   return new Promise((resolve) => {
     const input = h("input", {
       class: "input",
@@ -36,15 +41,18 @@ function askForPassword() {
     const form = h(
       "form",
       { class: "stack", novalidate: true },
-      h("h2", { id: "proof-title" }, t("Your password, please")),
+      h("h2", { id: "proof-title" }, t("Confirm that it is you")),
       h("p", {}, t("You signed in a while ago, and this could outlive the session.")),
-      h("div", { class: "field" }, h("label", { for: "proof-password" }, t("Password")), input),
+      has_password ? h("div", { class: "field" }, h("label", { for: "proof-password" }, t("Password")), input) : null,
       fault,
       h(
         "div",
         { class: "acts" },
         h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
-        h("button", { class: "button primary" }, t("Go on")),
+        passkey_options && passkeysWork()
+          ? h("button", { type: "button", class: "button", onclick: () => byPasskey() }, t("Use a passkey"))
+          : null,
+        has_password ? h("button", { class: "button primary" }, t("Go on")) : null,
       ),
     );
     /** @type {HTMLDialogElement} */
@@ -53,24 +61,37 @@ function askForPassword() {
     dialog.addEventListener("close", () => resolve(isProved));
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
+      await send({ password: input.value });
+      input.focus();
+    });
+
+    async function byPasskey() {
       try {
-        await post("/account/proof", { password: input.value });
+        await send({ passkey: await usePasskey(passkey_options) });
+      } catch (error) {
+        say(passkeyFault(error) ?? t("The passkey was not accepted. Try again."));
+      }
+    }
+
+    /** @param {{ password: string } | { passkey: any }} confirmation */
+    async function send(confirmation) {
+      try {
+        await post("/account/proof", confirmation);
       } catch (error) {
         if (!(error instanceof ApiError)) throw error;
-        fault.replaceChildren(
-          h(
-            "p",
-            { class: "field-error", role: "alert" },
-            icon("circle-alert", "small"),
-            h("span", {}, error.details?.password?.join(" ") ?? error.message),
-          ),
-        );
-        input.focus();
+        say(error.details?.password?.join(" ") ?? error.message);
         return;
       }
       isProved = true;
       dialog.close();
-    });
+    }
+
+    /** @param {string} words */
+    function say(words) {
+      const line = h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, words));
+      fault.replaceChildren(line);
+    }
+
     open(dialog);
   });
 }

@@ -24,7 +24,7 @@ def operator() -> User:
 
 
 def sign_in(client: Client, name: str, password: str) -> str:
-    return client.post(reverse("sign-in"), {"username": name, "password": password}).content.decode()
+    return client.post(reverse("account_login"), {"login": name, "password": password}).content.decode()
 
 
 @pytest.mark.parametrize("path", ["/", "/missions/new", f"/missions/{uuid.UUID(int=1)}"])

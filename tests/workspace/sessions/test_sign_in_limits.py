@@ -37,7 +37,7 @@ def owner() -> User:
 
 
 def sign_in(client: Client, name: str, password: str, address: str = "203.0.113.1") -> bool:
-    answer = client.post("/sign-in", {"username": name, "password": password}, REMOTE_ADDR=address)
+    answer = client.post("/sign-in", {"login": name, "password": password}, REMOTE_ADDR=address)
     return bool(answer.status_code == 302)
 
 
@@ -105,7 +105,7 @@ def test_a_cookie_that_was_not_signed_here_makes_no_browser_known(client: Client
 
 def test_a_slow_name_lets_strangers_try_again_after_a_moment(owner: User, monkeypatch: pytest.MonkeyPatch) -> None:
     hammer(owner.username)
-    page = Client().post("/sign-in", {"username": owner.username, "password": PASSWORD}, REMOTE_ADDR="203.0.113.9").content.decode()
+    page = Client().post("/sign-in", {"login": owner.username, "password": PASSWORD}, REMOTE_ADDR="203.0.113.9").content.decode()
     assert "Use a browser in which you have signed in before" in page
     monkeypatch.setattr(sign_in_attempts.cache, "add", lambda *_: True)  # the moment has passed
     assert sign_in(Client(), owner.username, PASSWORD, "203.0.113.10")
@@ -121,7 +121,7 @@ def test_waiting_for_a_turn_is_no_wrong_try(owner: User, monkeypatch: pytest.Mon
 
 def test_names_that_nobody_has_are_slowed_down_alike() -> None:
     hammer("nobody")
-    page = Client().post("/sign-in", {"username": "nobody", "password": "x"}, REMOTE_ADDR="203.0.113.9").content.decode()
+    page = Client().post("/sign-in", {"login": "nobody", "password": "x"}, REMOTE_ADDR="203.0.113.9").content.decode()
     assert "Use a browser in which you have signed in before" in page
 
 
@@ -204,7 +204,7 @@ def test_a_flood_of_tries_is_no_flood_of_rows(owner: User) -> None:
 
 def test_the_log_takes_any_browser_name(client: Client, owner: User) -> None:
     client.post(
-        "/sign-in", {"username": owner.username, "password": PASSWORD}, HTTP_USER_AGENT="a\x07b" + "x" * 500, REMOTE_ADDR="2001:db8::1"
+        "/sign-in", {"login": owner.username, "password": PASSWORD}, HTTP_USER_AGENT="a\x07b" + "x" * 500, REMOTE_ADDR="2001:db8::1"
     )
     entry = SignInEntry.objects.get()
     assert entry.user_agent == ("ab" + "x" * 500)[:200]

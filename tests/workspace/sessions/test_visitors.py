@@ -39,7 +39,7 @@ def test_a_stranger_behind_the_proxy_by_tcp_holds_back_nobody_else() -> None:
     owner = User.objects.create_user(f"owner-{uuid.uuid4().hex[:8]}", password=PASSWORD)
 
     def sign_in(password: str, address: str) -> bool:
-        sent = {"username": owner.username, "password": password}
+        sent = {"login": owner.username, "password": password}
         return Client().post("/sign-in", sent, REMOTE_ADDR=PROXY, HTTP_X_FORWARDED_FOR=address).status_code == 302
 
     for _ in range(TRIES):
