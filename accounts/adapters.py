@@ -41,7 +41,7 @@ class AccountAdapter(DefaultAccountAdapter):
     def get_login_stages(self) -> list[str]:
         return [f"{stage.__module__}.{stage.__qualname__}" for stage in (SecondFactorStage, SetUpStage)]
 
-    def post_login(self, request: HttpRequest, user: User, **facts: Any) -> HttpResponse:  # type: ignore[override]
+    def post_login(self, request: HttpRequest, user: User, **facts: Any) -> HttpResponse:
         """Write the log, begin the session's times, and remember the browser as a trusted device."""
         response: HttpResponse = super().post_login(request, user, **facts)
         note_session(request.session, user, is_act=True, user_agent=request.headers.get("User-Agent", ""))
