@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
+from allauth.account.models import EmailAddress
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
@@ -42,6 +43,7 @@ def save_user(*, user: User, actor: User) -> User:
         if before and not may_change(actor, before):
             raise OperatorsAlone
         user.save()
+        EmailAddress.objects.filter(user=user).exclude(email=user.email.lower()).delete()  # verified for that address only
         _refuse_without_administrator(before)
         if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
             _withdraw_invitations(user, actor)
