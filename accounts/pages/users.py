@@ -17,7 +17,7 @@ from django.views.generic import FormView, TemplateView
 
 from accounts.email_addresses import AddressTaken, LinkInvalid, is_verified, user_of_link, verify
 from accounts.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
-from accounts.second_factors import has_authenticator_app, is_required_of, recovery_codes_left
+from accounts.second_factors import has_authenticator_app, is_required_of, passkeys_of, recovery_codes_left
 from workspace.models import SCOPES_OF_ROLE, User
 from workspace.pages import SignedInPage
 from workspace.sessions.preferences import TIME_ZONES
@@ -32,6 +32,7 @@ class AccountPage(SignedInPage):
         has_one = has_authenticator_app(user)
         return super().get_context_data(**kwargs) | {
             "has_authenticator_app": has_one,
+            "has_passkeys": passkeys_of(user).exists(),
             "second_factor_is_required": is_required_of(user),
             "codes_left": recovery_codes_left(user) if has_one else 0,
             "address_is_verified": is_verified(user),

@@ -178,8 +178,8 @@ class ContextPool:
 
         Without a service worker unless `service_workers="allow"`: tests of faults answer the requests of pages themselves.
         """
-        options = {"service_workers": "block"} | options
-        context = self.browser.new_context(base_url=self.address, reduced_motion="reduce", **options)
+        options = {"service_workers": "block", "base_url": self.address} | options
+        context = self.browser.new_context(reduced_motion="reduce", **options)
         if not HAS_PICTURES:
             context.add_init_script(COARSE_CANVASES)
             if not draws:

@@ -17,6 +17,7 @@ import { createPasskey, passkeyFault, passkeysWork } from "./webauthn.js";
 export function mountPasskeys({ notify, settle }) {
   const form = byId("passkey-form", HTMLFormElement);
   const name = byId("passkey_name", HTMLInputElement);
+  const fault = byId("passkey-fault");
   form.hidden = !passkeysWork();
   byId("passkeys-unavailable").hidden = passkeysWork();
   name.value = browserName(navigator.userAgent);
@@ -63,6 +64,7 @@ export function mountPasskeys({ notify, settle }) {
   }
 
   async function add() {
+    fault.hidden = true;
     try {
       const answer = /** @type {Answer<PasskeyOptions> | null} */ (
         await proved(() => post("/account/passkeys/options"))
@@ -71,8 +73,10 @@ export function mountPasskeys({ notify, settle }) {
       const passkey = await createPasskey(answer.data.options);
       await post("/account/passkeys", { name: name.value.trim() || browserName(navigator.userAgent), passkey });
     } catch (error) {
-      const fault = passkeyFault(error);
-      notify(fault ?? t("The passkey is not added."), fault ? null : error);
+      const words = passkeyFault(error);
+      if (words === null) notify(t("The passkey is not added."), error);
+      else fault.textContent = words;
+      fault.hidden = words === null;
       return;
     }
     settle();

@@ -7,11 +7,17 @@ import pytest
 from playwright.sync_api import CDPSession, Page, expect
 
 from tests.browser.accounts.test_account import account, newcomer
-from tests.browser.accounts.test_sign_in_page import pictures
-from tests.browser.conftest import PASSWORD, Visitor
+from tests.browser.accounts.test_sign_in_page import pictures, types_password
+from tests.browser.conftest import Visitor
 
 pytestmark = pytest.mark.browser
 Picture = Callable[[Page, str], None]
+SIGNED_IN_AN_HOUR_AGO = """
+from datetime import timedelta
+from django.utils.timezone import now
+from workspace.models import BrowserSession
+BrowserSession.objects.filter(user__username="petra").update(began_at=now() - timedelta(hours=1))
+"""
 
 
 def with_authenticator(page: Page) -> CDPSession:
@@ -31,13 +37,11 @@ def test_a_passkey_is_added_signs_in_confirms_and_is_removed(visitor: Visitor, p
     context = visitor.new_context(base_url=visitor.site.address.replace("127.0.0.1", "localhost"))
     page = context.new_page()
     with_authenticator(page)
-    page.goto("/sign-in")
-    page.get_by_label("User name").fill("petra")
-    page.get_by_label("Password").fill(PASSWORD)
-    page.get_by_role("button", name="Sign in", exact=True).click()
+    types_password(page, "petra")
+    expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
     account(page)
     passkeys = page.get_by_role("list", name="Passkeys")
-    page.get_by_role("region", name="Passkeys").get_by_label("Name").fill("Work laptop")
+    page.get_by_label("Name of the passkey").fill("Work laptop")
     page.get_by_role("button", name="Add a passkey").click()
     expect(passkeys.get_by_role("listitem")).to_have_count(1)
     expect(passkeys).to_contain_text("Work laptop")
@@ -55,16 +59,13 @@ def test_a_passkey_is_added_signs_in_confirms_and_is_removed(visitor: Visitor, p
     expect(passkeys).to_contain_text(re.compile("used .*now|used .*ago", re.IGNORECASE))
 
     context.clear_cookies()
-    page.goto("/sign-in")
-    page.get_by_label("User name").fill("petra")
-    page.get_by_label("Password").fill(PASSWORD)
-    page.get_by_role("button", name="Sign in", exact=True).click()
+    types_password(page, "petra")
     expect(page.get_by_role("heading", name="One more thing")).to_be_visible()
     pictures(page, picture, "sign-in-code-passkey-phone")
     page.get_by_role("button", name="Use a passkey").click()
     expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
 
-    visitor.site.does("from workspace.models import BrowserSession; BrowserSession.objects.update(began_at='2026-01-01T00:00Z')")
+    visitor.site.does(SIGNED_IN_AN_HOUR_AGO)
     account(page)
     page.get_by_role("button", name="Remove Work laptop").click()
     dialog = page.get_by_role("dialog", name="Confirm that it is you")

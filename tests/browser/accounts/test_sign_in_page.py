@@ -36,7 +36,7 @@ def types_password(page: Page, name: str) -> None:
     page.goto("/sign-in")
     page.get_by_label("User name").fill(name)
     page.get_by_label("Password").fill(PASSWORD)
-    page.get_by_role("button", name="Sign in").click()
+    page.get_by_role("button", name="Sign in", exact=True).click()
 
 
 def test_a_second_factor_is_set_up_asked_for_and_replaced_by_a_recovery_code(visitor: Visitor, picture: Picture) -> None:
