@@ -221,3 +221,19 @@ def test_what_outlives_a_session_wants_the_password_again_after_a_while(settings
 def test_browsers_keep_no_page_and_no_answer_that_does_not_say_so() -> None:
     client = client_of(a_user())
     assert {client.get(path)["Cache-Control"] for path in ("/account", "/", "/api/v1/account", "/api/v1/jobs")} == {"no-store"}
+
+
+def test_a_session_of_the_version_before_django_allauth_stays() -> None:
+    vera = a_user()
+    store = SessionStore()
+    store.update(
+        {
+            "_auth_user_id": str(vera.pk),
+            "_auth_user_backend": "workspace.api.authentication.RoleBackend",
+            "_auth_user_hash": vera.get_session_auth_hash(),
+        }
+    )
+    store.save()
+    client = Client()
+    client.cookies["sessionid"] = store.session_key
+    assert client.get("/api/v1/account").json()["username"] == vera.username
