@@ -7,6 +7,7 @@ from datetime import timedelta
 from typing import Any
 
 import pytest
+from allauth.mfa.models import Authenticator
 from django.apps import apps
 from django.contrib.gis.geos import Point
 from django.contrib.sessions.models import Session
@@ -47,7 +48,7 @@ SHARED = {
     "vehicle_id of unknown-vehicles",
 }  # fmt: skip
 PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte"}
-APPS = ("workspace", "missions", "telemetry", "simulation")
+APPS = ("mfa", "workspace", "missions", "telemetry", "simulation")
 REFUSED = {403, 404, 409}  # 409: it was not deleted, so that nothing is brought back
 OWN_DOINGS = {"workspace.signinentry", "workspace.idempotencykey", "workspace.browsersession"}  # of the stranger
 
@@ -87,6 +88,9 @@ def rows_of(home: Organisation) -> dict[str, Model]:
         "invitation_id": Invitation.objects.create(organisation=home, role=Role.VIEWER, token_sha256=f"{home.pk:064}", expires_at=soon),
         "session_id": BrowserSession.objects.create(
             session=session_of(keeper), user=keeper, began_at=timezone.now(), acted_at=timezone.now(), present_at=timezone.now()
+        ),
+        "passkey_id": Authenticator.objects.create(
+            user=keeper, type=Authenticator.Type.WEBAUTHN, data={"name": "Laptop", "credential": {}}
         ),
         "token_id": ApiToken.objects.create(user=keeper, token_sha256=f"{home.pk:064}", expires_at=soon),
     }
