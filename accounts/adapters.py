@@ -15,6 +15,7 @@ from django.utils.translation import ngettext
 
 from accounts.login import SecondFactorStage, SetUpStage, record_sign_in
 from accounts.second_factors import has_second_factor
+from accounts.single_sign_on import local_sign_in_is_on, local_sign_in_off
 from workspace.models import SignInOutcome, User
 from workspace.sessions.browser_sessions import note_session
 from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, mark_of, remember, try_to_sign_in
@@ -25,6 +26,8 @@ class AccountAdapter(DefaultAccountAdapter):
 
     def authenticate(self, request: HttpRequest, **credentials: Any) -> User:
         """Return the user of this name and password. Raises ValidationError with one message that does not reveal which part was wrong."""
+        if not local_sign_in_is_on():
+            raise ValidationError(local_sign_in_off(), code="local_sign_in_off")
         name = credentials["username"]
         try:
             this_try = try_to_sign_in(name=name, address=address_of(request), trusted_device=mark_of(request, name))

@@ -16,6 +16,7 @@ from drf_spectacular.utils import OpenApiResponse
 from rest_framework.request import Request
 
 from accounts.second_factors import has_second_factor, is_required_of
+from accounts.single_sign_on import came_by_single_sign_on
 from workspace.api.errors import ApiProblem
 from workspace.models import SignInEntry, SignInOutcome, User
 from workspace.sessions.sign_in_attempts import address_of, is_first_in, network_of
@@ -55,7 +56,9 @@ class SecondFactorStage(LoginStage):
 
     def _is_needed(self) -> bool:
         user = self.login.user
-        return isinstance(user, User) and has_second_factor(user) and not did_use_passwordless_login(self.request, user)
+        if not isinstance(user, User) or came_by_single_sign_on(self.request, user):  # second factors are the provider's matter then
+            return False
+        return has_second_factor(user) and not did_use_passwordless_login(self.request, user)
 
     def _page(self) -> HttpResponse:
         self.request.session.cycle_key()
@@ -71,7 +74,9 @@ class SetUpStage(SecondFactorStage):
 
     def _is_needed(self) -> bool:
         user = self.login.user
-        return isinstance(user, User) and is_required_of(user) and not has_second_factor(user)
+        if not isinstance(user, User) or came_by_single_sign_on(self.request, user):
+            return False
+        return is_required_of(user) and not has_second_factor(user)
 
 
 def pending_stage(request: HttpRequest, stage: type[SecondFactorStage]) -> SecondFactorStage | None:
@@ -88,18 +93,23 @@ def pending_stage(request: HttpRequest, stage: type[SecondFactorStage]) -> Secon
 
 PROVED_AT = "workspace.proved_at"  # in the session, beside its beginning
 REAUTHENTICATION_S = 15 * 60
+LOCAL_SIGN_IN_OFF = OpenApiResponse(description="`local_sign_in_off`: the identity provider signs in.")
 PASSWORD_NEEDED = OpenApiResponse(description="`password_needed`: say it at `/account/proof`.")
 
 
-def note_reauthentication(session: Any) -> None:
-    """Record that the user has just entered their password in this session."""
-    session[PROVED_AT] = time.time()
+def note_reauthentication(session: Any, *, at_s: float | None = None) -> None:
+    """Record that the user has authenticated in this session: now, or when the identity provider says."""
+    session[PROVED_AT] = time.time() if at_s is None else at_s
 
 
 def require_reauthentication(request: Request) -> None:
-    """Raise ApiProblem 403 `password_needed` unless the password was entered within 15 min, by a login or a reauthentication."""
+    """Raise ApiProblem 403 `password_needed` unless the user authenticated within 15 min, by a login or a reauthentication.
+
+    A session that began by single sign-on proves nothing: the provider may have asked the user for nothing then.
+    """
     row = getattr(request.session, "in_use", None)
-    since_sign_in_s = REAUTHENTICATION_S + 1.0 if row is None else (timezone.now() - row.began_at).total_seconds()
+    is_unproved = row is None or came_by_single_sign_on(request, request.user)
+    since_sign_in_s = REAUTHENTICATION_S + 1.0 if is_unproved else (timezone.now() - row.began_at).total_seconds()
     since_reauthentication_s = time.time() - request.session.get(PROVED_AT, 0.0)
     if min(since_sign_in_s, since_reauthentication_s) > REAUTHENTICATION_S:
         raise ApiProblem(403, "password_needed", _("Say your password again for this."))

@@ -12,6 +12,7 @@ from accounts.pages.password import (
 )
 from accounts.pages.second_factors import CodePage, NewCodesPage, RemovePage, SetUpPage
 from accounts.pages.sign_in import PasskeySignIn, SignInPage, SignOutPage
+from accounts.pages.single_sign_on import SingleSignOn, SingleSignOnCallback, SingleSignOnReauthentication
 from accounts.pages.users import AccountPage, AdministrationPage, EmailAddressPage, InvitationPage
 from workspace.pages import OfflinePage, service_worker
 
@@ -21,6 +22,9 @@ urlpatterns = [
     path("sign-in", SignInPage.as_view(), name="account_login"),
     path("sign-in/passkey", PasskeySignIn.as_view(), name="sign-in-passkey"),
     path("sign-in/code", CodePage.as_view(), name="mfa_authenticate"),
+    path("single-sign-on", SingleSignOn.as_view(), name="single-sign-on"),
+    path("single-sign-on/callback", SingleSignOnCallback.as_view(), name="single-sign-on-callback"),
+    path("single-sign-on/reauthentication", SingleSignOnReauthentication.as_view(), name="single-sign-on-reauthentication"),
     path("sign-out", SignOutPage.as_view(), name="sign-out"),
     path("account", AccountPage.as_view(), name="account"),
     path("email-address/<str:key>", EmailAddressPage.as_view(), name="account_confirm_email"),

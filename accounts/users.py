@@ -36,18 +36,20 @@ class OperatorsAlone(PermissionError):
         super().__init__(_("Only installation operators change the account of one."))
 
 
-def save_user(*, user: User, actor: User) -> User:
-    """Store a new or changed account. Raises NoAdministratorLeft, OperatorsAlone."""
+def save_user(*, user: User, actor: User | None) -> User:
+    """Store a new or changed account; without an actor the identity provider has changed it. Raises NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         before = User.objects.filter(pk=user.pk).first()
-        if before and not may_change(actor, before):
+        if before and actor and not may_change(actor, before):
             raise OperatorsAlone
         user.save()
         EmailAddress.objects.filter(user=user).exclude(email=user.email.lower()).delete()  # verified for that address only
         _refuse_without_administrator(before)
         if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
             _withdraw_invitations(user, actor)
-        _record_user(actor, user.pk, user_facts(before) if before else None, user_facts(user))
+        places = {actor.organisation_id} if actor else {user.organisation_id, before.organisation_id if before else user.organisation_id}
+        for organisation_id in sorted(places):
+            _record_user(actor, user.pk, user_facts(before) if before else None, user_facts(user), organisation_id)
     return user
 
 
@@ -74,7 +76,8 @@ def delete_user(*, user: User, actor: User) -> None:
         _withdraw_invitations(user, actor)
         user.delete()
         _refuse_without_administrator(held)
-        _record_user(actor if actor.pk != key else None, key, before, None)
+        is_own = actor.pk == key
+        _record_user(None if is_own else actor, key, before, None, DEFAULT_ORGANISATION_ID if is_own else actor.organisation_id)
 
 
 def set_installation_operator(*, user: User, is_operator: bool) -> None:
@@ -105,7 +108,7 @@ def _administrates(user: User) -> bool:
     return user.role == Role.ADMINISTRATOR and user.is_active and not user.is_service
 
 
-def _withdraw_invitations(user: User, actor: User) -> None:
+def _withdraw_invitations(user: User, actor: User | None) -> None:
     """Withdraw the open invitations of a user who loses the role or access, as they could restore it."""
     now = timezone.now()
     still_open = Invitation.objects.filter(invited_by=user, accepted_at=None, revoked_at=None, expires_at__gt=now)
@@ -118,10 +121,11 @@ def _withdraw_invitations(user: User, actor: User) -> None:
         )  # fmt: skip
 
 
-def _record_user(actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None) -> None:
+def _record_user(
+    actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None, organisation_id: int
+) -> None:
     if before == after:
         return
-    organisation_id = actor.organisation_id if actor else DEFAULT_ORGANISATION_ID
     action = "changed" if before and after else "created" if after else "deleted"
     AuditEntry.objects.create(
         organisation_id=organisation_id, actor=actor, action=action, subject_type="user", subject_id=str(key), before=before, after=after

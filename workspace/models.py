@@ -203,6 +203,7 @@ class SignInOutcome(models.TextChoices):
     WRONG_CODE = "wrong-code", "Wrong code"
     HELD_BACK = "held-back", "Too many tries"
     SIGNED_OUT = "signed-out", "Signed out"
+    REFUSED = "refused", "Refused after single sign-on"
 
 
 class SignInEntry(models.Model):

@@ -13,6 +13,7 @@ from django.utils import translation
 from django.utils.translation import gettext as _
 
 from accounts.invitations import mail_leaves_here, public_address
+from accounts.pages.single_sign_on import LocalSignInRequired
 from accounts.services import revoke_tokens
 from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempts, address_of, count_attempt, network_of, remember
 
@@ -47,7 +48,7 @@ class LostPasswordForm(PasswordResetForm):
         Thread(target=in_its_language, args=args, kwargs=options, name="mail with a link", daemon=True).start()
 
 
-class LostPasswordPage(views.PasswordResetView):
+class LostPasswordPage(LocalSignInRequired, views.PasswordResetView):
     """Sends a link if the address belongs to an account. The response is the same if it does not."""
 
     template_name = "account/lost_password.html"
@@ -62,11 +63,11 @@ class LostPasswordPage(views.PasswordResetView):
         return super().get_form_kwargs() | {"address": address_of(self.request)}
 
 
-class LostPasswordSentPage(views.PasswordResetDoneView):
+class LostPasswordSentPage(LocalSignInRequired, views.PasswordResetDoneView):
     template_name = "account/lost_password_sent.html"
 
 
-class NewPasswordPage(views.PasswordResetConfirmView):
+class NewPasswordPage(LocalSignInRequired, views.PasswordResetConfirmView):
     """The page behind the mail's link, which works once and for an hour."""
 
     template_name = "account/new_password.html"
@@ -80,7 +81,7 @@ class NewPasswordPage(views.PasswordResetConfirmView):
         return response
 
 
-class NewPasswordSetPage(views.PasswordResetCompleteView):
+class NewPasswordSetPage(LocalSignInRequired, views.PasswordResetCompleteView):
     template_name = "account/new_password_set.html"
 
 
@@ -95,7 +96,7 @@ class ChangePasswordForm(PasswordChangeForm):
         return str(super().clean_old_password())
 
 
-class ChangePasswordPage(views.PasswordChangeView):
+class ChangePasswordPage(LocalSignInRequired, views.PasswordChangeView):
     template_name = "account/change_password.html"
     form_class = ChangePasswordForm
     success_url = reverse_lazy("password-changed")

@@ -17,7 +17,10 @@ from django.views.generic import View
 
 from accounts.email_addresses import user_name_of
 from accounts.login import record_sign_in
+from accounts.identity_provider import identity_provider
+from accounts.pages.single_sign_on import LocalSignInRequired, refuse_local_sign_in
 from accounts.passkeys import PasskeyRefused, passkey_of_response, request_options
+from accounts.single_sign_on import local_sign_in_is_on
 from workspace.models import SignInOutcome, User
 from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, count_attempt, network_of
 
@@ -35,11 +38,15 @@ class SignInPage(LoginView):
     template_name = "sign_in.html"
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
-        return super().get_context_data(**kwargs) | {"next": self.get_next_url() or ""}
+        facts = {"next": self.get_next_url() or "", "provider": identity_provider(), "local_sign_in": local_sign_in_is_on()}
+        return super().get_context_data(**kwargs) | facts
+
+    def post(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponse:
+        return super().post(request, *args, **kwargs) if local_sign_in_is_on() else refuse_local_sign_in(request)
 
 
 @method_decorator(never_cache, name="dispatch")
-class PasskeySignIn(View):
+class PasskeySignIn(LocalSignInRequired, View):
     """GET returns a challenge as JSON; POST takes its signature from the form of the sign-in page."""
 
     def get(self, request: HttpRequest) -> HttpResponse:

@@ -16,8 +16,11 @@ from django.views.decorators.cache import never_cache
 from django.views.generic import FormView, TemplateView
 
 from accounts.email_addresses import AddressTaken, LinkInvalid, is_verified, user_of_link, verify
+from accounts.identity_provider import identity_provider
 from accounts.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
 from accounts.second_factors import has_authenticator_app, is_required_of, passkeys_of, recovery_codes_left
+from accounts.pages.single_sign_on import LocalSignInRequired
+from accounts.single_sign_on import identity_of, is_of_provider_alone, local_sign_in_is_on
 from workspace.models import SCOPES_OF_ROLE, User
 from workspace.pages import SignedInPage
 from workspace.sessions.preferences import TIME_ZONES
@@ -30,7 +33,12 @@ class AccountPage(SignedInPage):
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
         has_one = has_authenticator_app(user)
+        provider = identity_provider()
+        has_local_sign_in = local_sign_in_is_on() and not is_of_provider_alone(user)
         return super().get_context_data(**kwargs) | {
+            "provider": provider if provider and identity_of(user) else None,
+            "has_local_sign_in": has_local_sign_in,
+            "has_password": has_local_sign_in and user.has_usable_password(),
             "has_authenticator_app": has_one,
             "has_passkeys": passkeys_of(user).exists(),
             "second_factor_is_required": is_required_of(user),
@@ -87,7 +95,7 @@ class NewAccountForm(UserCreationForm):
 
 
 @method_decorator(never_cache, name="dispatch")
-class InvitationPage(FormView):
+class InvitationPage(LocalSignInRequired, FormView):
     """Makes the account and logs in. An invalid link is reported as such without the reason."""
 
     template_name = "account/invitation.html"

@@ -9,7 +9,7 @@ from rest_framework.views import APIView
 
 from accounts import services
 from accounts.email_addresses import send_verification
-from accounts.login import PASSWORD_NEEDED, record_sign_in, require_reauthentication
+from accounts.login import LOCAL_SIGN_IN_OFF, PASSWORD_NEEDED, record_sign_in, require_reauthentication
 from accounts.serializers import (
     AccountChangeSerializer,
     AccountSerializer,
@@ -23,6 +23,7 @@ from accounts.serializers import (
     VerificationMailSerializer,
     with_secret,
 )
+from accounts.single_sign_on import require_local_sign_in
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import page_of
 from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
@@ -95,9 +96,10 @@ class AccountPassword(APIView):
         description="All other sessions end, with `end_tokens` all tokens, too. Not with a token."
         " Five wrong tries in a quarter of an hour.",
         request=PasswordChangeSerializer,
-        responses={204: OpenApiResponse(description="Changed.")},
+        responses={204: OpenApiResponse(description="Changed."), 403: LOCAL_SIGN_IN_OFF},
     )
     def post(self, request: SignedInRequest) -> Response:
+        require_local_sign_in()
         body = PasswordChangeSerializer(data=request.data, context={"user": request.user})
         body.is_valid(raise_exception=True)
         check_password(request, "old_password", body.validated_data["old_password"])

@@ -20,6 +20,7 @@ from accounts.passkeys import (
 )
 from accounts.second_factors import passkeys_of
 from accounts.serializers import PasskeyInputSerializer, PasskeyListSerializer, PasskeyOptionsSerializer, PasskeySerializer
+from accounts.single_sign_on import is_of_provider_alone, require_local_sign_in
 from workspace.api.errors import ApiProblem
 from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
 from workspace.api.signed_in import SignedInRequest
@@ -31,6 +32,13 @@ def check_passkey(request: SignedInRequest, response: Any) -> None:
         confirm_with_passkey(user=request.user, credential=json.dumps(response))
     except PasskeyRefused as error:
         raise _refused() from error
+
+
+def _require_passkeys(request: SignedInRequest) -> None:
+    """Raise ApiProblem 403 for users whom only the identity provider signs in: a passkey would outlive their account there."""
+    require_local_sign_in()
+    if is_of_provider_alone(request.user):
+        raise ApiProblem(403, "local_sign_in_off", _("Your account signs in at the identity provider alone, without passkeys."))
 
 
 def _refused() -> ApiProblem:
@@ -54,6 +62,7 @@ class AccountPasskeys(APIView):
         responses={201: PasskeySerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many.")},
     )
     def post(self, request: SignedInRequest) -> Response:
+        _require_passkeys(request)
         require_reauthentication(request)
         body = PasskeyInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -80,6 +89,7 @@ class AccountPasskeyOptions(APIView):
         responses={200: PasskeyOptionsSerializer, 403: PASSWORD_NEEDED},
     )
     def post(self, request: SignedInRequest) -> Response:
+        _require_passkeys(request)
         require_reauthentication(request)
         return Response({"options": creation_options(request.user)})
 

@@ -1,6 +1,7 @@
 """API endpoints of the own browser sessions, and of when the current one ends."""
 
 from django.contrib.auth import update_session_auth_hash
+from django.urls import reverse
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
@@ -8,7 +9,8 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import services
-from accounts.login import PASSWORD_NEEDED, note_reauthentication, require_reauthentication
+from accounts.identity_provider import identity_provider
+from accounts.login import LOCAL_SIGN_IN_OFF, PASSWORD_NEEDED, note_reauthentication, require_reauthentication
 from accounts.passkeys import request_options
 from accounts.second_factors import passkeys_of
 from accounts.serializers import (
@@ -18,6 +20,7 @@ from accounts.serializers import (
     ReauthenticationSerializer,
     SessionTimesSerializer,
 )
+from accounts.single_sign_on import identity_of, local_sign_in_is_on, require_local_sign_in
 from accounts.views.account import check_password
 from accounts.views.passkeys import check_passkey
 from workspace.api.errors import ApiProblem
@@ -73,18 +76,26 @@ class Reauthentication(APIView):
     def get(self, request: SignedInRequest) -> Response:
         if request.auth is not None:
             raise ApiProblem(404, "not_found", _("There is no session."))
-        user = request.user
-        has_password = user.has_usable_password()
-        return Response({"has_password": has_password, "passkey_options": request_options(user) if passkeys_of(user).exists() else None})
+        user, is_local = request.user, local_sign_in_is_on()
+        provider = identity_provider() if identity_of(user) else None
+        at_provider = provider and {"address": reverse("single-sign-on-reauthentication"), "name": provider.name}
+        return Response(
+            {
+                "has_password": is_local and user.has_usable_password(),
+                "passkey_options": request_options(user) if is_local and passkeys_of(user).exists() else None,
+                "single_sign_on": at_provider,
+            }
+        )
 
     @extend_schema(
         operation_id="prove_oneself",
         summary="Re-authenticate",
         description="For 15 min this session may then make tokens and passkeys, and end sessions. Five tries in a quarter of an hour.",
         request=ReauthenticationSerializer,
-        responses={204: OpenApiResponse(description="It is the password, or one of the user’s passkeys.")},
+        responses={204: OpenApiResponse(description="It is the password, or one of the user’s passkeys."), 403: LOCAL_SIGN_IN_OFF},
     )
     def post(self, request: SignedInRequest) -> Response:
+        require_local_sign_in()
         body = ReauthenticationSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         if "passkey" in body.validated_data:
