@@ -5,9 +5,11 @@ import unicodedata
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
+from urllib.parse import urlsplit
 
 MAX_USER_NAME_LENGTH = 150
 MAX_ISSUER_LENGTH = 200  # of the column that binds a user to an issuer
+OWN_MACHINE = {"127.0.0.1", "localhost", "::1"}
 ROLES_BY_RANK = ("administrator", "curator", "operator", "viewer")
 _NOT_IN_NAMES = re.compile(r"[^\w.+-]+")
 
@@ -26,6 +28,16 @@ class IdentityProvider:
     organisation_claim: str = ""
     organisations: Mapping[str, str] = field(default_factory=dict)
     default_role: str = ""
+
+
+def is_secure(address: str) -> bool:
+    """Whether an address begins with https://, or leads to this machine."""
+    try:
+        parts = urlsplit(address)
+        host = parts.hostname
+    except ValueError:
+        return False
+    return bool(host) and (parts.scheme == "https" or (parts.scheme == "http" and host in OWN_MACHINE))
 
 
 def role_of(claims: Mapping[str, Any], provider: IdentityProvider) -> str:

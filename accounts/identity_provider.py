@@ -20,7 +20,7 @@ import jwt
 from django.conf import settings
 from django.utils.crypto import constant_time_compare
 
-from accounts.identity_claims import IdentityProvider, merged
+from accounts.identity_claims import IdentityProvider, is_secure, merged
 
 ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES384", "ES512", "EdDSA")  # never `none`, never a shared key
 REQUIRED_CLAIMS = ["iss", "sub", "aud", "exp", "iat"]
@@ -31,7 +31,6 @@ MAX_ANSWER_BYTES = 512 * 1024
 CACHED_S = 10 * 60  # discovery document and keys
 REFETCH_INTERVAL_S = 30  # an unknown key makes the keys be fetched again, no more often than this
 MAX_SUBJECT_LENGTH = 191  # of the column
-OWN_MACHINE = {"127.0.0.1", "localhost", "::1"}
 _ENDPOINTS = ("authorization_endpoint", "token_endpoint", "jwks_uri")
 
 
@@ -77,16 +76,17 @@ documents = _Documents()
 
 def identity_provider() -> IdentityProvider | None:
     """Return the provider that the settings name."""
-    provider: IdentityProvider | None = settings.IDENTITY_PROVIDER
-    return provider
+    return settings.IDENTITY_PROVIDER
 
 
-def authorization_address(provider: IdentityProvider, *, redirect: str, state: str, nonce: str, challenge: str, **more: str) -> str:
+def authorization_address(
+    provider: IdentityProvider, *, redirect: str, state: str, nonce: str, challenge: str, more: Mapping[str, str]
+) -> str:
     """Return where the browser signs in. Raises ProviderUnavailable, WrongAnswer."""
     asked = {
         "response_type": "code", "client_id": provider.client_id, "redirect_uri": redirect, "scope": " ".join(provider.scopes),
         "state": state, "nonce": nonce, "code_challenge": challenge, "code_challenge_method": "S256",
-    } | more  # fmt: skip
+    } | {**more}  # fmt: skip
     address = _discovered(provider)["authorization_endpoint"]
     return f"{address}{'&' if '?' in address else '?'}{urlencode(asked)}"
 
@@ -176,16 +176,6 @@ def _secure(address: Any) -> str:
     if isinstance(address, str) and is_secure(address):
         return address
     raise WrongAnswer("the discovery document names an address without https://")
-
-
-def is_secure(address: str) -> bool:
-    """Whether an address begins with https://, or leads to this machine."""
-    try:
-        parts = urlsplit(address)
-        host = parts.hostname
-    except ValueError:
-        return False
-    return bool(host) and (parts.scheme == "https" or (parts.scheme == "http" and host in OWN_MACHINE))
 
 
 class _NoRedirects(urllib.request.HTTPRedirectHandler):

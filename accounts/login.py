@@ -108,8 +108,8 @@ def require_reauthentication(request: Request) -> None:
     A session that began by single sign-on proves nothing: the provider may have asked the user for nothing then.
     """
     row = getattr(request.session, "in_use", None)
-    is_unproved = row is None or came_by_single_sign_on(request, request.user)
-    since_sign_in_s = REAUTHENTICATION_S + 1.0 if is_unproved else (timezone.now() - row.began_at).total_seconds()
+    proves = row is not None and isinstance(request.user, User) and not came_by_single_sign_on(request, request.user)
+    since_sign_in_s = (timezone.now() - row.began_at).total_seconds() if row is not None and proves else REAUTHENTICATION_S + 1.0
     since_reauthentication_s = time.time() - request.session.get(PROVED_AT, 0.0)
     if min(since_sign_in_s, since_reauthentication_s) > REAUTHENTICATION_S:
         raise ApiProblem(403, "password_needed", _("Say your password again for this."))

@@ -140,11 +140,19 @@ class ReauthenticationSerializer(serializers.Serializer):
         return attrs
 
 
+class ReauthenticationAtProviderSerializer(serializers.Serializer):
+    """A link to the identity provider, which comes back to `next`, a path of the query."""
+
+    address = serializers.CharField()
+    name = serializers.CharField(help_text="of the provider")
+
+
 class ReauthenticationMethodsSerializer(serializers.Serializer):
     has_password = serializers.BooleanField()
     passkey_options: Declared = serializers.DictField(
         allow_null=True, help_text="for `navigator.credentials.get`; null for users without a passkey"
     )
+    single_sign_on = ReauthenticationAtProviderSerializer(allow_null=True, help_text="null for users whom no provider signs in")
 
 
 class PasskeySerializer(serializers.ModelSerializer):

@@ -1,4 +1,4 @@
-"""Single sign-on: which account an identity of the provider opens, with which role and organisation. Changes are recorded in the history."""
+"""Single sign-on: the account, role and organisation of an identity of the provider. Changes are recorded in the history."""
 
 import logging
 from collections.abc import Mapping
@@ -14,6 +14,7 @@ from django.core.validators import validate_email
 from django.db import transaction
 from django.http import HttpRequest
 from django.utils.translation import gettext as _
+from rest_framework.request import Request
 
 from accounts.identity_claims import IdentityProvider, free_user_name, organisations_of, role_of, wanted_user_name
 from accounts.identity_provider import identity_provider
@@ -70,7 +71,7 @@ def is_of_provider_alone(user: User) -> bool:
     return not user.has_usable_password() and identity_of(user) is not None
 
 
-def came_by_single_sign_on(request: HttpRequest, user: User) -> bool:
+def came_by_single_sign_on(request: HttpRequest | Request, user: User) -> bool:
     """Whether this session began at the provider, or is beginning there."""
     return any(record.get("method") == METHOD for record in get_authentication_records(request, user))
 

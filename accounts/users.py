@@ -121,9 +121,7 @@ def _withdraw_invitations(user: User, actor: User | None) -> None:
         )  # fmt: skip
 
 
-def _record_user(
-    actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None, organisation_id: int
-) -> None:
+def _record_user(actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None, organisation_id: int) -> None:
     if before == after:
         return
     action = "changed" if before and after else "created" if after else "deleted"

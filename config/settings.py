@@ -175,6 +175,8 @@ AUTH_PASSWORD_VALIDATORS = [
 PASSWORD_WORDS = entries("SPANWISE_PASSWORD_WORDS", "")  # forbidden in passwords, beside those of the trade
 REQUIRES_SECOND_FACTOR = flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # for all users, whatever their organisation requires
 globals().update(sign_in_settings.sign_in_settings())
+IDENTITY_PROVIDER = sign_in_settings.identity_provider()  # of single sign-on
+LOCAL_SIGN_IN = sign_in_settings.local_sign_in(IDENTITY_PROVIDER)  # by passwords and passkeys
 PASSWORD_RESET_TIMEOUT = 3_600  # seconds that the link of a mail works
 SIGN_IN_LOG_DAYS = int(number("SPANWISE_SIGN_IN_LOG_DAYS", 180))
 

@@ -16,8 +16,8 @@ from django.views.decorators.cache import never_cache
 from django.views.generic import View
 
 from accounts.email_addresses import user_name_of
-from accounts.login import record_sign_in
 from accounts.identity_provider import identity_provider
+from accounts.login import record_sign_in
 from accounts.pages.single_sign_on import LocalSignInRequired, refuse_local_sign_in
 from accounts.passkeys import PasskeyRefused, passkey_of_response, request_options
 from accounts.single_sign_on import local_sign_in_is_on

@@ -60,17 +60,17 @@ class _SingleSignOnView(View):
         self.provider = provider
         return super().dispatch(request, *args, **kwargs)
 
-    def to_provider(self, request: HttpRequest, *, of: int | None = None, **more: str) -> HttpResponse:
+    def to_provider(self, request: HttpRequest, *, of: int | None = None, more: dict[str, str] | None = None) -> HttpResponse:
         """Redirect to the provider. State, nonce and code verifier stay in this session and work once, for ten minutes."""
         proof = generate_code_challenge()
         begun: dict[str, Any] = {
             "nonce": get_random_string(43), "verifier": proof["code_verifier"], "next": get_next_redirect_url(request), "of": of,
             "redirect": public_address(request) + reverse("single-sign-on-callback"), "at": time.time(),
         }  # fmt: skip
-        state = get_random_string(43)
+        state, challenge = get_random_string(43), proof["code_challenge"].decode()
         try:
             address = authorization_address(
-                self.provider, redirect=begun["redirect"], state=state, nonce=begun["nonce"], challenge=proof["code_challenge"].decode(), **more
+                self.provider, redirect=begun["redirect"], state=state, nonce=begun["nonce"], challenge=challenge, more=more or {}
             )
         except ProviderUnavailable as error:
             return self.unavailable(request, error)
@@ -110,7 +110,7 @@ class SingleSignOn(_SingleSignOnView):
             count_attempt("single sign-on from", network_of(address_of(request)), most=STARTS_OF_A_NETWORK)
         except TooManyAttempts:
             return self.fails(request, 429, _("Too many tries"), _("Wait 15 min, then try again."))
-        return self.to_provider(request, **(ANOTHER_ACCOUNT if "another" in request.GET else {}))
+        return self.to_provider(request, more=ANOTHER_ACCOUNT if "another" in request.GET else None)
 
 
 class SingleSignOnReauthentication(LoginRequiredMixin, _SingleSignOnView):
@@ -119,7 +119,7 @@ class SingleSignOnReauthentication(LoginRequiredMixin, _SingleSignOnView):
     def get(self, request: HttpRequest) -> HttpResponse:
         if not isinstance(request.user, User) or identity_of(request.user) is None:
             raise Http404
-        return self.to_provider(request, of=request.user.pk, **FRESH)
+        return self.to_provider(request, of=request.user.pk, more=FRESH)
 
 
 class SingleSignOnCallback(_SingleSignOnView):
@@ -137,9 +137,7 @@ class SingleSignOnCallback(_SingleSignOnView):
         if not 0 < len(code) <= MAX_CODE_LENGTH:
             return self.expired(request)
         try:
-            claims = claims_of_code(
-                self.provider, code=code, redirect=begun["redirect"], verifier=begun["verifier"], nonce=begun["nonce"]
-            )
+            claims = claims_of_code(self.provider, code=code, redirect=begun["redirect"], verifier=begun["verifier"], nonce=begun["nonce"])
             if begun["of"] is not None:
                 return self._reauthenticated(request, begun, claims)
             return self._signed_in(request, begun, claims)
@@ -176,8 +174,8 @@ class SingleSignOnCallback(_SingleSignOnView):
         logger.warning("single sign-on: the provider answers with the error %s", "".join(filter(str.isprintable, error[:60])))
         if error in {"server_error", "temporarily_unavailable"}:
             return self.unavailable(request, ProviderUnavailable(error[:60]))
-        title = _("{provider} did not sign you in").format(provider=self.provider.name)
-        return self.fails(request, 403, title, _("You have cancelled, or {provider} does not let you use Spanwise.").format(provider=self.provider.name))
+        title, advice = _("{provider} did not sign you in"), _("You have cancelled, or {provider} does not let you use Spanwise.")
+        return self.fails(request, 403, title.format(provider=self.provider.name), advice.format(provider=self.provider.name))
 
     def _refused(self, request: HttpRequest, refused: SignInRefused) -> HttpResponse:
         record_sign_in(request, SignInOutcome.REFUSED, user=refused.user)

@@ -4474,12 +4474,20 @@ export interface components {
             /** @description kept in the mission's history */
             reason: string;
         };
+        /** @description A link to the identity provider, which comes back to `next`, a path of the query. */
+        ReauthenticationAtProvider: {
+            address: string;
+            /** @description of the provider */
+            name: string;
+        };
         ReauthenticationMethods: {
             has_password: boolean;
             /** @description for `navigator.credentials.get`; null for users without a passkey */
             passkey_options: {
                 [key: string]: unknown;
             } | null;
+            /** @description null for users whom no provider signs in */
+            single_sign_on: components["schemas"]["ReauthenticationAtProvider"] | null;
         };
         /** @description One of the two. */
         ReauthenticationRequest: {
@@ -5956,9 +5964,10 @@ export interface components {
          *     * `wrong-code` - Wrong code
          *     * `held-back` - Too many tries
          *     * `signed-out` - Signed out
+         *     * `refused` - Refused after single sign-on
          * @enum {string}
          */
-        SignInOutcome: "signed-in" | "wrong" | "wrong-code" | "held-back" | "signed-out";
+        SignInOutcome: "signed-in" | "wrong" | "wrong-code" | "held-back" | "signed-out" | "refused";
         SignInPage: {
             results: components["schemas"]["SignIn"][];
             /** @description address of the next page */
@@ -8202,6 +8211,7 @@ export type ReachabilityReasonCodeEnum = components['schemas']['ReachabilityReas
 export type ReachableAssets = components['schemas']['ReachableAssets'];
 export type ReachableFlight = components['schemas']['ReachableFlight'];
 export type ReasonInputRequest = components['schemas']['ReasonInputRequest'];
+export type ReauthenticationAtProvider = components['schemas']['ReauthenticationAtProvider'];
 export type ReauthenticationMethods = components['schemas']['ReauthenticationMethods'];
 export type ReauthenticationRequest = components['schemas']['ReauthenticationRequest'];
 export type RecordApproval = components['schemas']['RecordApproval'];

@@ -83,7 +83,7 @@ showZone();
 
 const tokens = mountTokens({ notify, settle });
 mountPassword({ notify, settle }, () => void tokens.load());
-const passkeys = mountPasskeys({ notify, settle });
+const passkeys = document.getElementById("passkeys") ? mountPasskeys({ notify, settle }) : null;
 const sessions = mountSessions({ notify, settle });
 const jobs = mountJobs({ notify, settle });
 
@@ -114,7 +114,7 @@ async function loadSignIns(address = "/account/sign-ins?limit=5") {
 }
 
 byId("more-sign-ins").addEventListener("click", () => nextSignIns && loadSignIns(nextSignIns));
-Promise.all([tokens.load(), jobs.load(), sessions.load(), passkeys.load(), loadSignIns()]).then(() => {
+Promise.all([tokens.load(), jobs.load(), sessions.load(), passkeys?.load(), loadSignIns()]).then(() => {
   document.documentElement.dataset.loaded = "true";
   if (location.hash) document.getElementById(location.hash.slice(1))?.focus({ preventScroll: false });
 });

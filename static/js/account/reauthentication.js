@@ -26,8 +26,14 @@ export async function proved(send) {
   return (await confirm(data)) ? send() : null;
 }
 
+/** The way to the identity provider and back to this page. @param {{ address: string }} provider */
+function addressOf({ address }) {
+  const here = location.pathname + location.search + location.hash;
+  return `${address}?${new URLSearchParams({ next: here })}`;
+}
+
 /** @param {ReauthenticationMethods} methods @returns {Promise<boolean>} */
-function confirm({ has_password, passkey_options }) {
+function confirm({ has_password, passkey_options, single_sign_on }) {
   return new Promise((resolve) => {
     const input = h("input", {
       class: "input",
@@ -51,6 +57,13 @@ function confirm({ has_password, passkey_options }) {
         h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
         passkey_options && passkeysWork()
           ? h("button", { type: "button", class: "button", onclick: () => byPasskey() }, t("Use a passkey"))
+          : null,
+        single_sign_on
+          ? h(
+              "a",
+              { class: has_password ? "button" : "button primary", href: addressOf(single_sign_on) },
+              t("Confirm with {provider}", { provider: single_sign_on.name }),
+            )
           : null,
         has_password ? h("button", { class: "button primary" }, t("Go on")) : null,
       ),

@@ -12,6 +12,7 @@ export const OUTCOMES = {
   wrong: { icon: "circle-x", words: t("Wrong name or password") },
   "wrong-code": { icon: "circle-x", words: t("Wrong code") },
   "held-back": { icon: "octagon-alert", words: t("Held back, too many tries") },
+  refused: { icon: "octagon-alert", words: t("Refused after single sign-on") },
   "signed-out": { icon: "log-out", words: t("Signed out") },
 };
 

@@ -15,7 +15,8 @@ pytestmark = pytest.mark.django_db
 STAND_INS = {"uuid": "00000000-0000-4000-8000-000000000000", "int": "0", "str": "x", "path": "x", "file_kind": "csv", "result_kind": "csv"}
 OPEN_TO_ALL = {
     "api/schema", "api/docs", "service-worker.js", "offline", "sign-in", "lost-password", "lost-password/sent", "new-password/x/x",
-    "new-password/set", "invitation/x", "email-address/x", "sign-in/passkey",
+    "new-password/set", "invitation/x", "email-address/x", "sign-in/passkey", "single-sign-on",
+    "single-sign-on/callback",
 }  # fmt: skip
 SENDS_BACK_TO_THE_DOOR = {"sign-out", "sign-in/code"}  # the code is asked of whoever has just typed the password
 FOR_ADMINISTRATORS = {"administration"}
