@@ -55,7 +55,7 @@ def organisations_of(claims: Mapping[str, Any], provider: IdentityProvider) -> s
 def merged(id_token: Mapping[str, Any], userinfo: Mapping[str, Any]) -> dict[str, Any]:
     """Return the claims of both, those of the signed ID token first. An address is verified if the source that names it says so."""
     claims = {**userinfo, **id_token}
-    verified = {source.get("email") for source in (id_token, userinfo) if source.get("email_verified") in (True, "true")}
+    verified = [source.get("email") for source in (id_token, userinfo) if str(source.get("email_verified")).lower() == "true"]
     return claims | {"email_verified": isinstance(claims.get("email"), str) and claims["email"] in verified}
 
 

@@ -18,8 +18,8 @@ from django.views.generic import FormView, TemplateView
 from accounts.email_addresses import AddressTaken, LinkInvalid, is_verified, user_of_link, verify
 from accounts.identity_provider import identity_provider
 from accounts.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
+from accounts.pages.single_sign_on import refuse_local_sign_in
 from accounts.second_factors import has_authenticator_app, is_required_of, passkeys_of, recovery_codes_left
-from accounts.pages.single_sign_on import LocalSignInRequired
 from accounts.single_sign_on import identity_of, is_of_provider_alone, local_sign_in_is_on
 from workspace.models import SCOPES_OF_ROLE, User
 from workspace.pages import SignedInPage
@@ -95,13 +95,15 @@ class NewAccountForm(UserCreationForm):
 
 
 @method_decorator(never_cache, name="dispatch")
-class InvitationPage(LocalSignInRequired, FormView):
+class InvitationPage(FormView):
     """Makes the account and logs in. An invalid link is reported as such without the reason."""
 
     template_name = "account/invitation.html"
     form_class = NewAccountForm
 
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
+        if not local_sign_in_is_on():
+            return refuse_local_sign_in(request)
         try:
             self.invitation = open_invitation(kwargs["token"])
         except InvitationGone:

@@ -15,6 +15,7 @@ from rest_framework.views import APIView
 
 from accounts import invitations, second_factors, services
 from accounts.invitations import InvitationState, public_address
+from accounts.login import LOCAL_SIGN_IN_OFF
 from accounts.serializers import (
     InvitationInputSerializer,
     InvitationPageSerializer,
@@ -28,6 +29,7 @@ from accounts.serializers import (
     UserSerializer,
     with_secret,
 )
+from accounts.single_sign_on import require_local_sign_in
 from accounts.users import NoAdministratorLeft, OperatorsAlone
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import asked_choice, page_of
@@ -237,9 +239,10 @@ class InvitationList(APIView):
         operation_id="invite",
         summary="Make a link for a new account; only this answer shows it",
         request=InvitationInputSerializer,
-        responses={201: NewInvitationSerializer},
+        responses={201: NewInvitationSerializer, 403: LOCAL_SIGN_IN_OFF},
     )
     def post(self, request: SignedInRequest) -> Response:
+        require_local_sign_in()
         body = InvitationInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         invitation, token = invitations.invite(organisation=request.user.organisation, actor=request.user, **body.validated_data)
