@@ -31,7 +31,7 @@ def new_key() -> rsa.RSAPrivateKey:
 
 @dataclass
 class OpenIdProvider:
-    """`claims` are of the user who signs in there; `sign` makes the ID token; `answers` replace whole answers by path: (status, content)."""
+    """`claims` are of the user who signs in there; `sign` makes the ID token; `answers` replace those of paths: (status, content)."""
 
     port: int
     claims: Claims = field(default_factory=lambda: {"sub": "anna"})

@@ -1,6 +1,8 @@
 """Single sign-on by OpenID Connect, with providers that run beside the test: what signs in, what is refused, and who one is then."""
 
 import base64
+import hashlib
+import hmac
 import json
 import time
 import urllib.request
@@ -19,7 +21,17 @@ from accounts import identity_provider
 from accounts.identity_claims import IdentityProvider
 from accounts.identity_provider import documents
 from tests.accounts.authenticator_app import is_in
-from tests.accounts.openid_provider import CLIENT_ID, CLIENT_SECRET, OpenIdProvider, new_key, openid_provider
+from tests.accounts.openid_provider import (
+    CLIENT_ID,
+    CLIENT_SECRET,
+    OpenIdProvider,
+    comes_back,
+    heading,
+    new_key,
+    openid_provider,
+    signs_in,
+    user_of,
+)
 from tests.accounts.users import a_user, client_of
 from workspace.models import BrowserSession, SignInEntry, SignInOutcome, User
 
@@ -115,8 +127,6 @@ def test_a_sign_in_is_in_the_log_and_begins_a_new_session(provider: OpenIdProvid
 
 def _hs256_with_the_public_key(provider: OpenIdProvider, claims: dict[str, Any]) -> str:
     """The classic confusion: the public key, which everybody knows, as the shared one. PyJWT itself refuses to make such a token."""
-    import hashlib  # noqa: PLC0415
-    import hmac  # noqa: PLC0415
 
     def part(content: bytes) -> str:
         return base64.urlsafe_b64encode(content).decode().rstrip("=")
