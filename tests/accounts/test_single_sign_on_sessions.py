@@ -143,7 +143,8 @@ def test_the_sign_in_page_offers_what_there_is(provider: OpenIdProvider, setting
     ("method", "page"),
     [
         ("post", "/sign-in"), ("get", "/sign-in/passkey"), ("post", "/sign-in/passkey"), ("get", "/lost-password"),
-        ("post", "/lost-password"),         ("get", "/new-password/x/x"), ("get", "/change-password"), ("post", "/change-password"), ("get", "/invitation/x"),
+        ("post", "/lost-password"),         ("get", "/new-password/x/x"), ("get", "/change-password"),
+        ("post", "/change-password"), ("get", "/invitation/x"),
     ],
 )  # fmt: skip
 def test_pages_of_passwords_and_passkeys_are_refused(alone: OpenIdProvider, method: str, page: str) -> None:
