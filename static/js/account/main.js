@@ -82,7 +82,7 @@ function showZone() {
 showZone();
 
 const tokens = mountTokens({ notify, settle });
-mountPassword({ notify, settle }, () => void tokens.load());
+if (document.getElementById("password-form")) mountPassword({ notify, settle }, () => void tokens.load());
 const passkeys = document.getElementById("passkeys") ? mountPasskeys({ notify, settle }) : null;
 const sessions = mountSessions({ notify, settle });
 const jobs = mountJobs({ notify, settle });

@@ -30,8 +30,7 @@ function forgetFaults() {
 
 /** @param {Reporter} reporter @param {() => void} onChange tokens may have ended with it */
 export function mountPassword({ notify, settle }, onChange) {
-  const form = document.getElementById("password-form");
-  if (!(form instanceof HTMLFormElement)) return; // the account has none
+  const form = byId("password-form", HTMLFormElement);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     forgetFaults();
