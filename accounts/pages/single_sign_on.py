@@ -106,6 +106,8 @@ class SingleSignOn(_SingleSignOnView):
     def get(self, request: HttpRequest) -> HttpResponse:
         if request.user.is_authenticated:
             return HttpResponseRedirect(get_next_redirect_url(request) or resolve_url("missions"))
+        if request.headers.get("Sec-Fetch-Site") == "cross-site":  # nobody is signed in by the page of another site
+            return HttpResponseRedirect(f"{resolve_url('account_login')}?{request.GET.urlencode()}")
         try:
             count_attempt("single sign-on from", network_of(address_of(request)), most=STARTS_OF_A_NETWORK)
         except TooManyAttempts:

@@ -303,6 +303,13 @@ def test_an_answer_works_in_the_browser_alone_that_asked(provider: OpenIdProvide
     assert not is_in(victim)
 
 
+def test_a_page_of_another_site_starts_no_sign_in(provider: OpenIdProvider) -> None:
+    answer = Client().get("/single-sign-on?next=/live", headers={"Sec-Fetch-Site": "cross-site"})
+    assert answer.headers["Location"] == "/sign-in?next=%2Flive"
+    for site in ("none", "same-origin"):
+        assert Client().get("/single-sign-on", headers={"Sec-Fetch-Site": site}).headers["Location"].startswith(provider.issuer)
+
+
 def test_a_code_of_one_sign_in_does_not_work_in_another(provider: OpenIdProvider) -> None:
     """The code's challenge is bound to the verifier of the session that asked."""
     client = Client()
