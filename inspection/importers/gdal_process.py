@@ -14,7 +14,7 @@ from ctypes.util import find_library
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import IO, Any
 
 from operation.reasons import Reason
 
@@ -52,8 +52,10 @@ LIMITS = Limits()
 class GdalProcess:
     """A running child. files: by the names under which it finds them, all in one folder without anything else."""
 
-    def __init__(self, driver: str, folder: Path, files: Mapping[str, IO[bytes]], limits: Limits, **job: Any) -> None:
+    def __init__(self, driver: str, files: Mapping[str, IO[bytes]], limits: Limits, **job: Any) -> None:
         self._limits = limits
+        self._folder = tempfile.TemporaryDirectory(prefix="gdal-")
+        folder = Path(self._folder.name)
         for name, file in files.items():
             link = folder / name
             link.parent.mkdir(exist_ok=True)
@@ -117,12 +119,7 @@ class GdalProcess:
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 pipe.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
+        self._folder.cleanup()
 
     def _receive(self) -> None:
         assert self._process.stdout is not None  # noqa: S101
@@ -143,12 +140,25 @@ class GdalProcess:
         return GdalRefusal(Reason("reader_ended", {"mib": self._limits.memory_mib}))
 
 
+def started(driver: str, files: Mapping[str, IO[bytes]], limits: Limits = LIMITS, **job: Any) -> GdalProcess:
+    """Start a child that reads the first of the files, or the folder that it is in; its caller closes it. Raises GdalRefusal."""
+    process = GdalProcess(driver, files, limits, **job)
+    try:
+        process.begin()
+    except GdalRefusal:
+        process.close()
+        raise
+    return process
+
+
 @contextmanager
 def gdal_process(driver: str, files: Mapping[str, IO[bytes]], limits: Limits = LIMITS, **job: Any) -> Iterator[GdalProcess]:
-    """Start a child that reads the first of the files, or the folder that it is in. Raises GdalRefusal."""
-    with tempfile.TemporaryDirectory(prefix="gdal-") as folder, GdalProcess(driver, Path(folder), files, limits, **job) as process:
-        process.begin()
+    """Start a child and close it. Raises GdalRefusal."""
+    process = started(driver, files, limits, **job)
+    try:
         yield process
+    finally:
+        process.close()
 
 
 @cache

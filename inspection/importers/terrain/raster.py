@@ -8,7 +8,6 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 from pyproj import CRS
-from pyproj.exceptions import CRSError
 
 from inspection.terrain.heights import BLOCK_SIZE, MAX_HEIGHT_M, MIN_HEIGHT_M, HeightGrid
 from operation.reasons import Reason
@@ -186,29 +185,21 @@ def datum_named(name: str) -> str:
     return next((known for known in _NAMES.values() if known.lower() == name.lower()), name)
 
 
-def datum_of_codes(system_code: int, datum_code: int, citation: str) -> str | None:
-    """Return the datum in VerticalGeoKey, VerticalDatumGeoKey and VerticalCitationGeoKey of a GeoTIFF; None if it states none."""
-    if system_code in _GEOTIFF_ELLIPSOIDS or "ellipsoid" in citation.lower():
+def datum_of_system(system: CRS | None) -> str | None:
+    """Return the datum of a system of heights; None for none."""
+    if system is None:
+        return None
+    described = system.to_json_dict()
+    code, datum_code = (part.get("id", {}).get("code", 0) for part in (described, described.get("datum", {})))
+    if code in _GEOTIFF_ELLIPSOIDS or "ellipsoid" in system.name.lower():
         raise TerrainFileError(ELLIPSOIDAL)
-    if system_code in _NAMES:
-        return _NAMES[system_code]
-    if datum_code in _NAMES_OF_DATUMS:
-        return _NAMES_OF_DATUMS[datum_code]
-    system = _vertical_system(system_code)
-    if system is not None:
-        return datum_named(system.name.removesuffix(" height")[:MAX_NAME_LENGTH])
-    return datum_named(citation[:MAX_NAME_LENGTH]) if citation else None
+    if code in _NAMES or datum_code in _NAMES_OF_DATUMS:
+        return _NAMES.get(code) or _NAMES_OF_DATUMS[datum_code]
+    return datum_named(system.name.removesuffix(" height")[:MAX_NAME_LENGTH])
 
 
-def metres_of_unit(code: int, system_code: int) -> float:
-    """Return the metres per unit of the file's heights. Code 0: not stated."""
-    factors = {0: None, 9001: 1.0, 9002: 0.3048, 9003: 1200 / 3937}
-    if code not in factors:
-        raise TerrainFileError(f"The heights are in a unit that is not known (EPSG:{code}). Convert them to metres first.")
-    stated = factors[code]
-    if stated is not None:
-        return stated
-    system = _vertical_system(system_code)
+def metres_of_system(system: CRS | None) -> float:
+    """Return the metres per unit of a system of heights."""
     return float(system.axis_info[0].unit_conversion_factor) if system is not None and system.axis_info else 1.0
 
 
@@ -216,13 +207,3 @@ def refuse_if_ellipsoidal(system: CRS) -> None:
     """Refuse a system with a third axis, which measures heights from its ellipsoid."""
     if system.is_geographic and len(system.axis_info) == 3:
         raise TerrainFileError(ELLIPSOIDAL)
-
-
-def _vertical_system(code: int) -> CRS | None:
-    if not 1024 <= code < 32767:
-        return None
-    try:
-        system = CRS.from_epsg(code)
-    except CRSError:
-        return None
-    return system if system.is_vertical else None

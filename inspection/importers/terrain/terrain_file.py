@@ -14,10 +14,9 @@ import numpy as np
 
 from inspection.importers.archive import Archive, opened_archive
 from inspection.importers.rows import AssetFileError
-from inspection.importers.terrain.geotiff import GeoTiff
+from inspection.importers.terrain.geotiff import GeoTiff, TiffReader
 from inspection.importers.terrain.raster import DatumFault, Raster, TerrainFileError, Window, datum_named, window_of
 from inspection.importers.terrain.resampling import DEGREE_M, placed
-from inspection.importers.terrain.tiff import TIFF_STARTS
 from operation.reasons import Reason
 
 VERTICAL_DATUM = "EGM96"  # SRTM, and data distributed in its format
@@ -29,6 +28,7 @@ MAX_UNPACKED_BYTES = 512 * 1024 * 1024
 DEFLATE_LIMIT = 1_032  # open sea compresses that much; the unpacked size is limited instead
 MAX_TIFF_RATIO, FREE_TIFF_BYTES = 100, 16 * 1024 * 1024
 NEEDS_DATUM = "The file does not say from where its heights count. Say it: EGM96, EGM2008, or the name of another vertical datum."
+_TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")  # classic and BigTIFF
 _ZIP_START, _GZIP_START = b"PK", b"\x1f\x8b"
 _TIFF_ENDINGS, _HGT_ENDING, _TABLES = (".tif", ".tiff"), ".hgt", (".txt", ".xml", ".prj", ".tfw", ".md", ".html", ".pdf", ".png", ".jpg")
 _CHUNK = 1024 * 1024
@@ -80,14 +80,16 @@ def opened_terrain(path: Path) -> Iterator[TerrainFile]:
     """Open a terrain file. Raises TerrainFileError for an invalid one, here or during reading."""
     with ExitStack() as stack:
         file = stack.enter_context(path.open("rb"))
+        reader = TiffReader()
+        stack.callback(reader.close)
         start = file.read(4)
         try:
             if start.startswith(_ZIP_START):
-                yield _several(stack, path)
+                yield _several(stack, path, reader)
             elif start.startswith(_GZIP_START) and path.name.lower().endswith(".hgt.gz"):
-                yield _one(stack.enter_context(_gunzipped(path)), path.name)
+                yield _one(stack.enter_context(_gunzipped(path)), path.name, reader)
             else:
-                yield _one(file, path.name)
+                yield _one(file, path.name, reader)
         except AssetFileError as error:
             raise TerrainFileError(str(error)) from error
 
@@ -102,11 +104,11 @@ def datum_of(file: TerrainFile, stated: str) -> str:
     return named
 
 
-def _one(file: IO[bytes], name: str) -> TerrainFile:
+def _one(file: IO[bytes], name: str, reader: TiffReader) -> TerrainFile:
     file.seek(0)
     start = file.read(4)
-    if start in TIFF_STARTS:
-        tiff = GeoTiff(file)
+    if start in _TIFF_STARTS:
+        tiff = GeoTiff(file, reader)
         raster, notes = placed(tiff)
         return TerrainFile("GeoTIFF", [raster], tiff.vertical_datum, [tiff.system.name], notes)
     if name.lower().removesuffix(".gz").endswith(_HGT_ENDING):
@@ -114,7 +116,7 @@ def _one(file: IO[bytes], name: str) -> TerrainFile:
     raise TerrainFileError(Reason("no_terrain_format"))
 
 
-def _several(stack: ExitStack, path: Path) -> TerrainFile:
+def _several(stack: ExitStack, path: Path, reader: TiffReader) -> TerrainFile:
     archive = stack.enter_context(opened_archive(path, most_ratio=DEFLATE_LIMIT))
     names = _members(archive)
     whole = TerrainFile("zip")
@@ -122,7 +124,7 @@ def _several(stack: ExitStack, path: Path) -> TerrainFile:
     for name in names:
         file = stack.enter_context(archive.unpacked(name))
         try:
-            part = _one(file, PurePosixPath(name.replace("\\", "/")).name)
+            part = _one(file, PurePosixPath(name.replace("\\", "/")).name, reader)
         except TerrainFileError as error:
             raise TerrainFileError(f"{name}: {error}") from error
         stated.setdefault(part.vertical_datum, name)

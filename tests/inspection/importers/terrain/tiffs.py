@@ -1,10 +1,16 @@
-"""Terrain files for tests: GeoTIFFs by GDAL, which our reader does not use, and HGT files."""
+"""Terrain files for tests: GeoTIFFs by GDAL, and HGT files."""
 
+import ctypes
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from django.contrib.gis.gdal import GDALRaster
+from django.contrib.gis.gdal.libgdal import lgdal
+
+from inspection.importers.terrain.geotiff import GeoTiff, TiffReader
 
 DATATYPES = {"u1": 1, "u2": 2, "i2": 3, "u4": 4, "i4": 5, "f4": 6, "f8": 7}
 
@@ -17,6 +23,8 @@ def write_geotiff(
     origin: tuple[float, float] = (9.0, 47.0),
     step: float = 0.001,
     void: float | None = -9999.0,
+    scale: float | None = None,
+    unit: str = "",
     **options: Any,
 ) -> Path:
     """`origin` is the corner of the first cell; its post stands half a step inside."""
@@ -27,8 +35,23 @@ def write_geotiff(
          "datatype": DATATYPES[heights.dtype.str[1:]], "bands": [band],
          "papsz_options": {name: str(value) for name, value in options.items()}}
     )  # fmt: skip
+    pointer = ctypes.c_void_p(raster.bands[0]._ptr)
+    if scale is not None:
+        lgdal.GDALSetRasterScale(pointer, ctypes.c_double(scale))
+    if unit:
+        lgdal.GDALSetRasterUnitType(pointer, unit.encode())
     raster._flush()
     return path
+
+
+@contextmanager
+def opened_tiff(path: Path) -> Iterator[GeoTiff]:
+    reader = TiffReader()
+    with path.open("rb") as file:
+        try:
+            yield GeoTiff(file, reader)
+        finally:
+            reader.close()
 
 
 def write_hgt(path: Path, heights: np.ndarray | int, side: int = 1201) -> Path:
