@@ -30,18 +30,18 @@ def main() -> None:
 def _do(gdal: Gdal, job: dict[str, Any]) -> None:
     data_set = gdal.open(job["path"])
     if job["driver"] == "GTiff":
-        _serve_windows(gdal, data_set)
+        _serve_windows(gdal, data_set, job["path"])
     else:
         report_features(gdal, data_set, job["layer"], job["most"], _report)
 
 
-def _serve_windows(gdal: Gdal, data_set: Any) -> None:
+def _serve_windows(gdal: Gdal, data_set: Any, path: str) -> None:
     """Answer each window that is asked for: a line with the absent parts, then the values."""
     _report(described(gdal, data_set))
     sys.stdout.buffer.flush()
     windows = None
     while line := sys.stdin.buffer.readline():
-        windows = windows or Windows(gdal, data_set)
+        windows = windows or Windows(gdal, data_set, path)
         window = json.loads(line)
         values = windows.values(*window)
         _report({"absent": windows.absent(*window)})

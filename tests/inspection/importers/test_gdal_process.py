@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from inspection.importers.gdal_process import GdalProcess, GdalRefusal, Limits, gdal_process
+from inspection.importers.gdal_process import GdalRefusal, Limits, gdal_process
 from tests.inspection.importers.assets.gdal_files import gml, gml_member, gml_point
 from tests.runaway import processor_s
 
@@ -117,9 +117,8 @@ def test_a_file_that_needs_more_processor_time_or_memory_is_refused_with_the_lim
 
 def test_a_child_that_crashes_is_a_refusal_and_leaves_nothing(tmp_path: Path) -> None:
     path = gml(tmp_path / "a.gml", gml_member(gml_point()))
-    with path.open("rb") as file, GdalProcess("GML", tmp_path, {"file.gml": file}, Limits(), layer="", most=1) as process:
+    with path.open("rb") as file, gdal_process("GML", {"file.gml": file}, layer="", most=1) as process:
         process._process.kill()
         with pytest.raises(GdalRefusal):
-            process.begin()
             process.line()
     assert process._process.returncode is not None

@@ -35,7 +35,7 @@ def write_geotiff(
          "datatype": DATATYPES[heights.dtype.str[1:]], "bands": [band],
          "papsz_options": {name: str(value) for name, value in options.items()}}
     )  # fmt: skip
-    pointer = ctypes.c_void_p(raster.bands[0]._ptr)
+    pointer = raster.bands[0]._ptr
     if scale is not None:
         lgdal.GDALSetRasterScale(pointer, ctypes.c_double(scale))
     if unit:
