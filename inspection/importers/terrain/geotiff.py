@@ -136,7 +136,7 @@ class GeoTiff:
 def _sample_type(head: dict[str, Any]) -> np.dtype[Any]:
     if not head["dtype"]:
         raise TerrainFileError("The GeoTIFF's values are no heights: whole numbers of 8 to 32 bits or floats of 32 or 64 bits are read.")
-    return np.dtype(head["dtype"])
+    return np.dtype(str(head["dtype"]))
 
 
 def _reference_systems(head: dict[str, Any]) -> tuple[CRS, CRS | None]:

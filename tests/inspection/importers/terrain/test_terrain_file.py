@@ -97,3 +97,13 @@ def test_a_datum_is_stored_by_its_name(stated: str, stored: str) -> None:
 def test_what_is_no_datum_or_the_ellipsoid_is_refused(stated: str) -> None:
     with pytest.raises(DatumFault):
         datum_named(stated)
+
+
+def test_the_rasters_of_a_zip_can_be_read_by_turns(tmp_path: Path) -> None:
+    paths = [write_geotiff(tmp_path / f"{number}.tif", np.full((4, 4), number, dtype="f4")) for number in (1, 2)]
+    with zipfile.ZipFile(tmp_path / "a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in paths:
+            archive.write(path, path.name)
+    with opened_terrain(tmp_path / "a.zip") as file:
+        found = [float(file.rasters[number].window(0, 0, 4, 4).heights_m[0, 0]) for number in (0, 1, 0)]
+    assert found == [1, 2, 1]
