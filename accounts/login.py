@@ -85,7 +85,7 @@ def pending_stage(request: HttpRequest, stage: type[SecondFactorStage]) -> Secon
     if found is None:
         return None
     user = found.login.user
-    if not (user.is_active and constant_time_compare(found.state.get("of", ""), user.get_session_auth_hash())):
+    if not (user and user.is_active and constant_time_compare(found.state.get("of", ""), user.get_session_auth_hash())):
         found.abort()
         return None
     return found

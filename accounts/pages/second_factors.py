@@ -124,8 +124,10 @@ class SetUpPage(AccessMixin, FormView):
             self.person = request.user
         else:
             return self.handle_no_permission()
+        if self.stage is not None and second_factors.has_second_factor(self.person):  # a passkey, meanwhile
+            return HttpResponseRedirect(resolve_url("account_login"))
         if second_factors.has_authenticator_app(self.person):
-            return HttpResponseRedirect(resolve_url("account_login" if self.stage else "second-factor-codes"))
+            return HttpResponseRedirect(resolve_url("second-factor-codes"))
         return super().dispatch(request, *args, **kwargs)
 
     def get_form_class(self) -> type[CodeForm]:

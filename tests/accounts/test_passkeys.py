@@ -1,5 +1,6 @@
 """Passkeys: made after a reauthentication, they sign in without a password, stand for a second factor, and belong to one user and host."""
 
+from base64 import b32decode
 from datetime import timedelta
 from typing import Any
 
@@ -11,8 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from accounts.passkeys import MAX_PASSKEYS
-from accounts.second_factors import passkeys_of
-from tests.accounts.authenticator_app import is_in, type_password, with_app
+from accounts.second_factors import has_authenticator_app, passkeys_of
+from tests.accounts.authenticator_app import code_now, is_in, shown_seed, type_password, with_app
 from tests.accounts.software_authenticator import SoftwareAuthenticator, as_form
 from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, BrowserSession, Organisation, Role, SignInEntry, SignInOutcome, User
@@ -252,3 +253,14 @@ def test_an_administrator_resets_passkeys_too(ida: User) -> None:
 def test_challenges_of_one_network_are_limited() -> None:
     answers = {stranger().get("/sign-in/passkey").status_code for _ in range(201)}
     assert answers == {200, 429}
+
+
+def test_a_password_alone_sets_up_no_app_once_there_is_a_passkey(ida: User) -> None:
+    Organisation.objects.update(requires_second_factor=True)
+    thief = stranger()
+    assert type_password(thief, ida, PASSWORD) == "/second-factor"
+    seed = b32decode(shown_seed(thief.get("/second-factor").content.decode()))
+    with_passkey(ida)
+    assert thief.post("/second-factor", {"code": code_now(seed)}).headers["Location"] == "/sign-in"
+    assert not is_in(thief)
+    assert not has_authenticator_app(ida)

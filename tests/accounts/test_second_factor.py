@@ -334,3 +334,11 @@ def test_whoever_runs_the_installation_asks_for_it_of_everybody(ida: User, setti
     settings.REQUIRES_SECOND_FACTOR = True
     assert type_password(Client(), ida, PASSWORD) == "/second-factor"
     assert client_of(ida).get("/api/v1/second-factor-rule").json() == {"required": True, "is_of_the_installation": True}
+
+
+def test_the_login_of_somebody_who_is_deleted_meanwhile_ends(ida: User) -> None:
+    with_app(ida)
+    client = Client()
+    type_password(client, ida, PASSWORD)
+    ida.delete()
+    assert client.get("/sign-in/code").headers["Location"] == "/sign-in"
