@@ -1,6 +1,7 @@
 """Passkeys (WebAuthn): registration, sign-in, reauthentication, removal. Each change is recorded in the history."""
 
 import json
+import struct
 from typing import Any
 
 from allauth.mfa.models import Authenticator
@@ -68,11 +69,17 @@ def confirm_with_passkey(*, user: User, credential: str) -> None:
     form.save()
 
 
+_DAMAGED = (
+    ArithmeticError, AssertionError, AttributeError, InvalidSignature, LookupError, RuntimeError, TypeError, UnsupportedAlgorithm,
+    ValueError, struct.error,
+)  # fmt: skip
+
+
 def _check(form: Any) -> Any:
     """Return the passkey of a valid form. The library lets several errors of damaged responses pass."""
     try:
         if form.is_valid():
             return form.cleaned_data["credential"]
-    except (ArithmeticError, AttributeError, InvalidSignature, LookupError, TypeError, UnsupportedAlgorithm, ValueError) as error:
+    except _DAMAGED as error:
         raise PasskeyRefused from error
     raise PasskeyRefused

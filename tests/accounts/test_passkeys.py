@@ -2,12 +2,16 @@
 
 from base64 import b32decode
 from datetime import timedelta
+from hashlib import sha256
 from typing import Any
 
 import pytest
 from django.core.cache import cache
 from django.test import Client
 from django.utils import timezone
+from fido2.cose import UnsupportedKey
+from fido2.utils import websafe_decode, websafe_encode
+from fido2.webauthn import AttestationObject, AttestedCredentialData, AuthenticatorData
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -264,3 +268,37 @@ def test_a_password_alone_sets_up_no_app_once_there_is_a_passkey(ida: User) -> N
     assert thief.post("/second-factor", {"code": code_now(seed)}).headers["Location"] == "/sign-in"
     assert not is_in(thief)
     assert not has_authenticator_app(ida)
+
+
+@pytest.mark.parametrize("extension", [b"\x81" * 5_000, b"\x19", b"\x1b\x00", b"\xa1\x81\x00\x00"])
+def test_damaged_extensions_are_refused_and_nothing_fails(ida: User, extension: bytes) -> None:
+    key, client = with_passkey(ida), stranger()
+    signed = key.get(client.get("/sign-in/passkey").json())
+    data = websafe_decode(signed["response"]["authenticatorData"])
+    signed["response"]["authenticatorData"] = websafe_encode(data[:32] + b"\x85" + data[33:] + extension)
+    assert client.post("/sign-in/passkey", as_form(signed)).status_code == 200
+    assert not is_in(client)
+
+
+@pytest.mark.parametrize("opened", ["[", '{"a":'])
+def test_endless_nesting_is_refused_and_nothing_fails(opened: str) -> None:
+    assert stranger().post("/sign-in/passkey", {"credential": opened * 100_000}).status_code == 200
+
+
+def test_an_attestation_without_a_key_is_refused(ida: User) -> None:
+    key, owner = SoftwareAuthenticator(), at_home(ida)
+    made = key.create(post(owner, "/account/passkeys/options").json()["options"])
+    data = AuthenticatorData.create(sha256(b"localhost").digest(), key.flags, 0)
+    made["response"]["attestationObject"] = websafe_encode(bytes(AttestationObject.create("none", data, {})))
+    assert post(owner, "/account/passkeys", {"name": "x", "passkey": made}).status_code == 400
+
+
+def test_a_key_of_an_unknown_algorithm_signs_nobody_in(ida: User) -> None:
+    key, owner, client = SoftwareAuthenticator(), at_home(ida), stranger()
+    made = key.create(post(owner, "/account/passkeys/options").json()["options"])
+    credential = AttestedCredentialData.create(bytes(16), key.credential_id, UnsupportedKey({1: 2, 3: -999}))
+    data = AuthenticatorData.create(sha256(b"localhost").digest(), key.flags | 0x40, 0, credential)
+    made["response"]["attestationObject"] = websafe_encode(bytes(AttestationObject.create("none", data, {})))
+    post(owner, "/account/passkeys", {"name": "x", "passkey": made})
+    assert client.post("/sign-in/passkey", as_form(key.get(client.get("/sign-in/passkey").json()))).status_code == 200
+    assert not is_in(client)
