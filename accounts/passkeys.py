@@ -4,12 +4,16 @@ import json
 import struct
 from typing import Any
 
+from allauth.core import context
 from allauth.mfa.models import Authenticator
 from allauth.mfa.webauthn.forms import AddWebAuthnForm, AuthenticateWebAuthnForm, LoginWebAuthnForm
 from allauth.mfa.webauthn.internal import auth, flows
 from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
+from django.conf import settings
 from django.db import transaction
 from django.http import HttpRequest
+from fido2.utils import websafe_decode
+from fido2.webauthn import CollectedClientData
 
 from accounts.second_factors import passkeys_of, record
 from workspace.models import User
@@ -76,10 +80,20 @@ _DAMAGED = (
 
 
 def _check(form: Any) -> Any:
-    """Return the passkey of a valid form. The library lets several errors of damaged responses pass."""
+    """Return the passkey of a valid form. The library lets several errors of damaged responses pass, and subdomains and other ports."""
     try:
-        if form.is_valid():
+        if form.is_valid() and _origin_of(json.loads(form.data["credential"])) in _own_origins():
             return form.cleaned_data["credential"]
     except _DAMAGED as error:
         raise PasskeyRefused from error
     raise PasskeyRefused
+
+
+def _origin_of(credential: Any) -> str:
+    return CollectedClientData(websafe_decode(credential["response"]["clientDataJSON"])).origin
+
+
+def _own_origins() -> set[str]:
+    """Return the origins from which forms are accepted, too."""
+    request = context.request
+    return {f"{request.scheme}://{request.get_host()}", *settings.CSRF_TRUSTED_ORIGINS}

@@ -134,6 +134,10 @@ def changed(ida: User, key: SoftwareAuthenticator, wrong: str) -> None:
         key.key = SoftwareAuthenticator().key
     elif wrong == "another site":
         key.origin = "http://localhost.example.org"
+    elif wrong == "a site under this one":
+        key.origin = "http://thief.localhost"
+    elif wrong == "another port":
+        key.origin = "http://localhost:8001"
     elif wrong == "another host":
         key.host = "example.org"
     elif wrong == "no user verification":
@@ -146,7 +150,8 @@ def changed(ida: User, key: SoftwareAuthenticator, wrong: str) -> None:
         User.objects.filter(pk=ida.pk).update(is_active=False)
 
 
-WRONG = ["another key", "another site", "another host", "no user verification", "another user", "removed", "user disabled"]
+SITES = ["another site", "a site under this one", "another port", "another host"]
+WRONG = [*SITES, "another key", "no user verification", "another user", "removed", "user disabled"]
 
 
 @pytest.mark.parametrize("wrong", WRONG)
@@ -168,7 +173,7 @@ def test_another_users_passkey_is_not_accepted_after_a_password(ida: User) -> No
     assert not is_in(client)
 
 
-@pytest.mark.parametrize("wrong", ["another site", "another host", "no user verification"])
+@pytest.mark.parametrize("wrong", [*SITES, "no user verification"])
 def test_a_passkey_that_is_made_wrongly_is_not_kept(ida: User, wrong: str) -> None:
     key = SoftwareAuthenticator()
     changed(ida, key, wrong)
