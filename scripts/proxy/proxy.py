@@ -238,7 +238,7 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     )
     api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web, again=again)
     of_uavs = _proxied("^~ /api/v1/uav-link/", "api", headers, scheme, to=uav_link, again=again)
-    links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, to=web, faults="emerg", again=again)
+    links = _proxied("~ ^/(new-password|invitation|email-address)/", "page", headers, scheme, to=web, faults="emerg", again=again)
     pages = _proxied("/", "page", headers, scheme, to=web, again=again)
     return f"""{"user root;" if os.geteuid() == 0 else ""}
 daemon off;
@@ -257,10 +257,10 @@ http {{
     charset utf-8;
     charset_types text/css text/plain text/javascript image/svg+xml;
 {temporary}
-    # A link to a new password, and an invitation, let their holder in: no log has them, nor faults of the application at them. Nor has it
-    # what stands behind a question mark.
+    # A link to a new password, and an invitation, let their holder in, and another link verifies an address: no log has them, nor faults
+    # of the application at them. Nor has it what stands behind a question mark.
     map $request $told_request {{
-        "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
+        "~^(?<told>[A-Z]+ /(new-password|invitation|email-address)/)" "$told...";
         "~^(?<asked>[^? ]+ [^? ]+)\\?" "$asked?...";
         default $request;
     }}

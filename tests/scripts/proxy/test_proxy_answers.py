@@ -73,6 +73,7 @@ def test_no_log_has_the_link_to_a_new_password(site: tuple[str, Path]) -> None:
     """Neither the line of the request nor, as the application is away, that of its fault."""
     assert fetch(f"{site[0]}/new-password/MQ/c1x-secret")[0] == 503
     assert fetch(f"{site[0]}/invitation/c1x-secret")[0] == 503
+    assert fetch(f"{site[0]}/email-address/c1x-secret")[0] == 503
     assert fetch(f"{site[0]}/lost-password?next=unseen")[0] == 503
     log = site[1] / "proxy.log"
     deadline = time.monotonic() + 10
@@ -81,4 +82,5 @@ def test_no_log_has_the_link_to_a_new_password(site: tuple[str, Path]) -> None:
         time.sleep(0.02)
     assert '"GET /new-password/..." 503' in log.read_text()
     assert '"GET /invitation/..." 503' in log.read_text()
+    assert '"GET /email-address/..." 503' in log.read_text()
     assert "secret" not in log.read_text()
