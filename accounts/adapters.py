@@ -64,6 +64,10 @@ class AccountAdapter(DefaultAccountAdapter):
         """No: pages and endpoints ask for it themselves (accounts/login.py)."""
         return False
 
+    def is_ajax(self, request: HttpRequest) -> bool:
+        """No: the sign-in page answers with a page whatever is accepted. The library's JSON repeats the password and drops cookies."""
+        return False
+
     def add_message(self, *args: Any, **facts: Any) -> None:
         """Pages say themselves what has happened."""
 

@@ -31,7 +31,7 @@ class SignInForm(LoginForm):
     """The form of user name, or e-mail address, and password."""
 
     def clean_login(self) -> str:
-        return user_name_of(super().clean_login())
+        return user_name_of(User.normalize_username(super().clean_login()))
 
 
 class SignInPage(LoginView):

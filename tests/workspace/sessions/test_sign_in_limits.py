@@ -209,3 +209,15 @@ def test_the_log_takes_any_browser_name(client: Client, owner: User) -> None:
     entry = SignInEntry.objects.get()
     assert entry.user_agent == ("ab" + "x" * 500)[:200]
     assert entry.address == "2001:db8::1"
+
+
+def test_names_are_typed_in_any_unicode_form() -> None:
+    User.objects.create_user("Jörg", password=PASSWORD)
+    assert Client().post("/sign-in", {"login": "Jo\N{COMBINING DIAERESIS}rg", "password": PASSWORD}).status_code == 302
+
+
+def test_the_answer_is_a_page_and_never_repeats_the_password() -> None:
+    headers = {"Accept": "application/json"}
+    page = Client().post("/sign-in", {"login": "nobody", "password": "told-to-nobody"}, headers=headers)
+    assert page.headers["Content-Type"].startswith("text/html")
+    assert "told-to-nobody" not in page.content.decode()
