@@ -20,6 +20,7 @@ from workspace.models import User
 
 MAX_PASSKEYS = 20  # of one user
 MAX_NAME_LENGTH = 60
+MAX_RESPONSE_LENGTH = 32_768  # of one that is stored: each sign-in of the user reads it
 
 
 class PasskeyRefused(Exception):
@@ -44,7 +45,10 @@ def request_options(user: User | None) -> dict[str, Any]:
 
 def add_passkey(*, request: HttpRequest, user: User, name: str, credential: Any) -> Authenticator:
     """Store the passkey of an authenticator's response. Raises PasskeyRefused, TooManyPasskeys."""
-    form = AddWebAuthnForm({"name": name, "credential": json.dumps(credential), "passwordless": True}, user=user)
+    text = json.dumps(credential)
+    if len(text) > MAX_RESPONSE_LENGTH:
+        raise PasskeyRefused
+    form = AddWebAuthnForm({"name": name, "credential": text, "passwordless": True}, user=user)
     _check(form)
     with transaction.atomic():
         User.objects.select_for_update().get(pk=user.pk)

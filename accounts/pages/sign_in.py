@@ -22,7 +22,7 @@ from accounts.pages.single_sign_on import LocalSignInRequired, refuse_local_sign
 from accounts.passkeys import PasskeyRefused, passkey_of_response, request_options
 from accounts.single_sign_on import local_sign_in_is_on
 from workspace.models import SignInOutcome, User
-from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, count_attempt, network_of
+from workspace.sessions.sign_in_attempts import TRIES_OF_A_NETWORK, TooManyAttempts, address_of, count_attempt, network_of
 
 PASSKEY_CHALLENGES = 200  # of one network in a quarter of an hour: each makes a session
 
@@ -62,10 +62,20 @@ class PasskeySignIn(LocalSignInRequired, View):
         try:
             passkey = passkey_of_response(request.POST.get("credential", ""))
         except PasskeyRefused:
-            record_sign_in(request, SignInOutcome.WRONG)
+            _record_refusal(request)
             return _refused(request)
         post_authentication(request, passkey, passwordless=True)
         return perform_login(request, Login(user=passkey.user, redirect_url=get_next_redirect_url(request)))
+
+
+def _record_refusal(request: HttpRequest) -> None:
+    """Record a refused passkey: passkeys cannot be guessed, so only the rows are limited."""
+    outcome = SignInOutcome.WRONG
+    try:
+        count_attempt("refused passkeys of", network_of(address_of(request)), most=TRIES_OF_A_NETWORK)
+    except TooManyAttempts:
+        outcome = SignInOutcome.HELD_BACK
+    record_sign_in(request, outcome)
 
 
 def _refused(request: HttpRequest) -> HttpResponse:

@@ -15,12 +15,13 @@ from fido2.webauthn import AttestationObject, AttestedCredentialData, Authentica
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from accounts.passkeys import MAX_PASSKEYS
+from accounts.passkeys import MAX_PASSKEYS, MAX_RESPONSE_LENGTH
 from accounts.second_factors import has_authenticator_app, passkeys_of
 from tests.accounts.authenticator_app import code_now, is_in, shown_seed, type_password, with_app
 from tests.accounts.software_authenticator import SoftwareAuthenticator, as_form
 from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, BrowserSession, Organisation, Role, SignInEntry, SignInOutcome, User
+from workspace.sessions.sign_in_attempts import TRIES_OF_A_NETWORK
 
 pytestmark = pytest.mark.django_db
 PASSWORD = "inspect-the-lines"
@@ -307,3 +308,19 @@ def test_a_key_of_an_unknown_algorithm_signs_nobody_in(ida: User) -> None:
     post(owner, "/account/passkeys", {"name": "x", "passkey": made})
     assert client.post("/sign-in/passkey", as_form(key.get(client.get("/sign-in/passkey").json()))).status_code == 200
     assert not is_in(client)
+
+
+def test_refused_passkeys_write_few_rows_and_keep_nobody_out(ida: User) -> None:
+    key = with_passkey(ida)
+    for _ in range(TRIES_OF_A_NETWORK + 5):
+        stranger().post("/sign-in/passkey", {"credential": "{}"})
+    assert SignInEntry.objects.filter(outcome=SignInOutcome.WRONG).count() == TRIES_OF_A_NETWORK
+    assert SignInEntry.objects.filter(outcome=SignInOutcome.HELD_BACK).count() == 1
+    assert signs_in(stranger(), key) == "/"
+
+
+def test_what_an_authenticator_adds_is_not_stored_at_any_length(ida: User) -> None:
+    owner = at_home(ida)
+    made = SoftwareAuthenticator().create(post(owner, "/account/passkeys/options").json()["options"])
+    assert post(owner, "/account/passkeys", {"name": "x", "passkey": made | {"more": "x" * MAX_RESPONSE_LENGTH}}).status_code == 400
+    assert not passkeys_of(ida).exists()
