@@ -3,7 +3,7 @@
 from allauth.account.internal.flows.email_verification import verify_email
 from allauth.account.models import EmailAddress, EmailConfirmationHMAC
 from django.core.mail import send_mail
-from django.db import transaction
+from django.db import IntegrityError, transaction
 from django.http import HttpRequest
 from django.template.loader import render_to_string
 from django.urls import reverse
@@ -26,7 +26,8 @@ def user_name_of(typed: str) -> str:
     """Return the user name of what was typed at sign-in: a name, or an e-mail address that is verified or of one user only."""
     if "@" not in typed or User.objects.filter(username=typed).exists():
         return typed
-    owner = EmailAddress.objects.filter(email=typed.lower(), verified=True).values_list("user__username", flat=True).first()
+    verified = EmailAddress.objects.filter(email=typed.lower(), verified=True, user__email__iexact=typed)  # and the user's still
+    owner = verified.values_list("user__username", flat=True).first()
     if owner is not None:
         return owner
     names = list(User.objects.filter(email__iexact=typed, is_active=True, is_service=False).values_list("username", flat=True)[:2])
@@ -57,18 +58,25 @@ def user_of_link(key: str) -> User:
 
 def verify(*, request: HttpRequest, key: str) -> User:
     """Verify the address of a link. Raises LinkInvalid, AddressTaken."""
-    with transaction.atomic():
-        address = _address_of(key)
-        stored = address.user.email
-        if not verify_email(request, address):
-            raise AddressTaken
-        user = address.user
-        User.objects.filter(pk=user.pk).update(email=stored)  # as it was typed
-        facts = user_facts(user)
-        record_change(
-            organisation=user.organisation, actor=user, action="address verified", subject_type="user", subject_id=user.pk,
-            before=facts, after=facts,
-        )  # fmt: skip
+    try:
+        with transaction.atomic():
+            User.objects.select_for_update().get(pk=_address_of(key).user_id)  # nobody changes the address meanwhile
+            return _verify(request, _address_of(key))
+    except IntegrityError as error:  # another user verified it at the same time
+        raise AddressTaken from error
+
+
+def _verify(request: HttpRequest, address: EmailAddress) -> User:
+    stored = address.user.email
+    if not verify_email(request, address):
+        raise AddressTaken
+    user: User = address.user
+    User.objects.filter(pk=user.pk).update(email=stored)  # as it was typed
+    facts = user_facts(user)
+    record_change(
+        organisation=user.organisation, actor=user, action="address verified", subject_type="user", subject_id=user.pk,
+        before=facts, after=facts,
+    )  # fmt: skip
     return user
 
 

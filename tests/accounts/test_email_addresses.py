@@ -1,16 +1,19 @@
 """E-mail addresses: verified by a mailed link, and good for signing in where they lead to one user."""
 
 import re
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any
 
 import pytest
 from allauth.account.models import EmailAddress
 from django.core import mail
 from django.core.cache import cache
+from django.db import connection, transaction
 from django.test import Client
 
 from accounts.email_addresses import is_verified, user_name_of
 from accounts.services import change_user
+from accounts.users import save_user
 from tests.accounts.authenticator_app import is_in
 from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, Role, User
@@ -138,3 +141,46 @@ def test_mails_are_limited_and_need_a_way_for_mail(settings: Any) -> None:
     assert answers == [200] * TRIES + [429]
     settings.EMAIL_BACKEND = "django.core.mail.backends.console.EmailBackend"
     assert client_of(person("otto")).post("/api/v1/account/email-address/verification").json() == {"was_mailed": False}
+
+
+def test_a_verified_address_that_the_version_before_has_changed_is_no_longer_the_users() -> None:
+    user = verified(person("ida"))
+    User.objects.filter(pk=user.pk).update(email="new@example.org")
+    assert user_name_of(ADDRESS) == ADDRESS
+
+
+@pytest.mark.django_db(transaction=True)
+def test_of_two_users_who_verify_one_address_at_once_one_gets_it() -> None:
+    links = [link_for(person(name)) for name in ("ida", "otto")]
+
+    def press(link: str) -> int:
+        try:
+            return Client().post(link).status_code
+        finally:
+            connection.close()
+
+    with ThreadPoolExecutor(2) as both:
+        assert list(both.map(press, links)) == [200, 200]
+    assert EmailAddress.objects.filter(verified=True).count() == 1
+
+
+@pytest.mark.django_db(transaction=True)
+def test_an_address_that_is_changed_at_the_same_time_stays_changed() -> None:
+    user = person("ida")
+    link = link_for(user)
+
+    def press() -> str:
+        try:
+            return Client().post(link).content.decode()
+        finally:
+            connection.close()
+
+    with ThreadPoolExecutor(1) as other, transaction.atomic():
+        user.email = "new@example.org"
+        save_user(user=user, actor=a_user(Role.ADMINISTRATOR))
+        pressed = other.submit(press)
+        wait([pressed], timeout=0.5)
+        assert not pressed.done()
+    assert "does not work any more" in pressed.result()
+    user.refresh_from_db()
+    assert user.email == "new@example.org"
