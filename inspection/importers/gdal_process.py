@@ -37,7 +37,7 @@ class Limits:
     """Limits of the child. answer_s: of the wall clock, for one answer."""
 
     memory_mib: int = 768  # of addresses, 200 MiB of which are libraries
-    processor_s: int = 2
+    processor_s: int = 1
     processor_s_per_mib: float = 3.0  # of the file, as for reading it here
     most_processor_s: int = 600
     answer_s: float = 60.0
@@ -89,7 +89,10 @@ class GdalProcess:
             if len(self._buffer) > MAX_LINE_BYTES:
                 raise GdalRefusal(Reason("reader_memory", {"mib": self._limits.memory_mib}))
             self._receive()
-        answer = json.loads(self._buffer[:end])
+        try:
+            answer = json.loads(self._buffer[:end])
+        except (ValueError, RecursionError) as error:  # no longer our program speaks
+            raise GdalRefusal(Reason("reader_ended", {"mib": self._limits.memory_mib})) from error
         del self._buffer[: end + 1]
         if isinstance(answer, dict) and "unreadable" in answer:
             raise GdalRefusal(answer["unreadable"])

@@ -9,20 +9,17 @@ from typing import IO, Any
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.archive import Archive
-from inspection.importers.assets.gml import check_numbers, root_of
+from inspection.importers.assets.gml import check_numbers
 from inspection.importers.assets.reference_systems import system_of_wkt
 from inspection.importers.assets.wkb import geometry_of_wkb
 from inspection.importers.gdal_process import GdalRefusal, gdal_process
 from inspection.importers.rows import MAX_ROWS, AssetFileError, Columns, RawRow, Source, plain_cell, refused, unique_names
+from inspection.importers.xml_root import leads_elsewhere, root_of
 from operation.reasons import Reason
 
 _DRIVERS = {"gml": "GML", "flatgeobuf": "FlatGeobuf", "dxf": "DXF", "filegdb": "OpenFileGDB"}
 _GML_NAMESPACE = b"http://www.opengis.net/gml"
 _DXF_START = re.compile(rb"(?:\s*999[ \t]*\r?\n[^\n]*\n)*\s*0[ \t]*\r?\n[ \t]*SECTION\b")
-_ELSEWHERE = {
-    "VRTDataset": "VRT", "OGRVRTDataSource": "VRT", "WFS_Capabilities": "WFS", "OGRWFSDataSource": "WFS", "GDAL_WMS": "WMS",
-    "WMS_Capabilities": "WMS", "WMT_MS_Capabilities": "WMS", "GDAL_WMTS": "WMTS", "WCS_GDAL": "WCS",
-}  # fmt: skip
 _TABLE_OF_TABLES = "a00000001.gdbtable"
 _GDB_MEMBER = re.compile(r"a[0-9a-f]{8}\.gdbtabl[ex]")
 _MAX_GDB_MEMBERS = 400  # two of each table
@@ -34,12 +31,10 @@ def format_of_start(start: bytes) -> str:
         return "flatgeobuf"
     if _DXF_START.match(start):
         return "dxf"
-    if not (start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<") or start.startswith((b"\xff\xfe<", b"\xfe\xff\x00<"))):
-        return ""
     root, declaration_line = root_of(start)
-    if root in _ELSEWHERE:
-        raise refused("line 1", Reason("leads_elsewhere", {"format": _ELSEWHERE[root]}))
-    if root == "kml" or _GML_NAMESPACE not in start.replace(b"\0", b""):
+    if reason := leads_elsewhere(root):
+        raise refused("line 1", reason)
+    if root in {"", "kml"} or _GML_NAMESPACE not in start.replace(b"\0", b""):
         return ""
     if declaration_line:
         raise refused(f"line {declaration_line}", "the GML declares a document type or entities; such files are not read")

@@ -1,8 +1,7 @@
-"""What GDAL does not refuse in GML: its first element is looked at, and its coordinates, of which GDAL takes "nan" or "x" for 0."""
+"""Coordinates of GML are checked before GDAL reads them, as it takes "nan" or "x" for 0."""
 
 import math
-from contextlib import suppress
-from typing import IO, Any
+from typing import IO
 from xml.parsers import expat
 
 from inspection.importers.rows import MAX_ROW_CHARACTERS, refused
@@ -12,31 +11,6 @@ _MAX_TOKEN_BYTES = 1024 * 1024  # of one tag or comment
 _DEEPEST = 64
 _NUMBERS = {"pos", "posList", "coordinates", "X", "Y", "Z"}
 _SEPARATORS = str.maketrans(",", " ")
-
-
-class _RootFound(Exception):
-    pass
-
-
-def root_of(start: bytes) -> tuple[str, int]:
-    """Return the name of an XML document's first element, and the line of its document type; empty and 0 where there is none."""
-    parser = expat.ParserCreate()
-    name, line = "", 0
-
-    def begin(tag: str, _: dict[str, str]) -> None:
-        nonlocal name
-        name = tag.rpartition(":")[2]
-        raise _RootFound
-
-    def declare(*_: Any) -> None:
-        nonlocal line
-        line = parser.CurrentLineNumber
-
-    parser.StartElementHandler = begin
-    parser.StartDoctypeDeclHandler = declare
-    with suppress(_RootFound, expat.ExpatError, LookupError, ValueError):  # the reader of the format has the words for what is wrong
-        parser.Parse(start)
-    return name, line
 
 
 def check_numbers(file: IO[bytes]) -> None:

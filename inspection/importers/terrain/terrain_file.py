@@ -17,6 +17,7 @@ from inspection.importers.rows import AssetFileError
 from inspection.importers.terrain.geotiff import GeoTiff, TiffReader
 from inspection.importers.terrain.raster import DatumFault, Raster, TerrainFileError, Window, datum_named, window_of
 from inspection.importers.terrain.resampling import DEGREE_M, placed
+from inspection.importers.xml_root import leads_elsewhere, root_of
 from operation.reasons import Reason
 
 VERTICAL_DATUM = "EGM96"  # SRTM, and data distributed in its format
@@ -106,14 +107,14 @@ def datum_of(file: TerrainFile, stated: str) -> str:
 
 def _one(file: IO[bytes], name: str, reader: TiffReader) -> TerrainFile:
     file.seek(0)
-    start = file.read(4)
-    if start in _TIFF_STARTS:
+    start = file.read(4096)
+    if start.startswith(_TIFF_STARTS):
         tiff = GeoTiff(file, reader)
         raster, notes = placed(tiff)
         return TerrainFile("GeoTIFF", [raster], tiff.vertical_datum, [tiff.system.name], notes)
     if name.lower().removesuffix(".gz").endswith(_HGT_ENDING):
         return TerrainFile("HGT", [HgtRaster(file, name)], VERTICAL_DATUM, ["WGS 84"])
-    raise TerrainFileError(Reason("no_terrain_format"))
+    raise TerrainFileError(leads_elsewhere(root_of(start)[0]) or Reason("no_terrain_format"))
 
 
 def _several(stack: ExitStack, path: Path, reader: TiffReader) -> TerrainFile:

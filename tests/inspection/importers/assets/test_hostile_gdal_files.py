@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from inspection.importers.assets.asset_file import RowFaults, opened_asset_file
+from inspection.importers.rows import AssetFileError
 from tests.inspection.importers.assets.gdal_files import dxf, gml, gml_member, gml_point, towers, translated
 from tests.inspection.importers.assets.made_files import zipped
 from tests.inspection.importers.assets.test_hostile_files import LAUGHS, XXE, first_fault, text_file
@@ -57,6 +59,11 @@ NESTED = gml_member("<gml:MultiGeometry><gml:geometryMember>" * 20_000)
 ENDLESS = gml_member(gml_point(), "").replace("</f:ref>", "a" * 20_000_000 + "</f:ref>")
 
 
+def dxf_array(folder: Path) -> Path:
+    """A block that stands in 30,000 columns and rows."""
+    return dxf(folder / "a.dxf", "0 INSERT 2 MAST 10 8 20 47 70 30000 71 30000 44 1 45 1", "0 BLOCK 2 MAST 10 0 20 0 0 ENDBLK")
+
+
 def dxf_point(folder: Path) -> Path:
     return dxf(folder / "a.dxf", "0 POINT 8 A 10 8 20 47")
 
@@ -82,6 +89,7 @@ HOSTILE: dict[str, tuple[Callable[[Path], Path], str]] = {
     "flatgeobuf cut off": (changed(flatgeobuf, lambda data: data[:-30]), "GDAL does not read it"),
     "flatgeobuf of noise": (changed(flatgeobuf, lambda data: data[:8] + bytes(range(256)) * 40), "GDAL does not read it"),
     "flatgeobuf with a huge header": (changed(flatgeobuf, lambda data: data[:8] + b"\xff" * 3 + b"\x7f" + data[12:]), "GDAL does not read"),
+    "dxf of an endless array of blocks": (dxf_array, "does not say in which reference system"),
     "dxf without a system": (dxf_point, "does not say in which reference system"),
     "dxf cut off": (changed(dxf_point, lambda data: data[:60]), "GDAL does not read it"),
     "geodatabase bomb": (bomb, "a.gdb/a00000001.gdbtable: the archive unpacks to more than 100 times its size"),
@@ -106,3 +114,11 @@ def test_it_is_refused_with_its_place_and_the_program_is_unharmed(name: str, tmp
     assert words in fault
     assert (sorted(folder.iterdir()), list(scratch.iterdir())) == (left, [])
     assert len(list(Path("/proc/self/fd").iterdir())) <= open_files
+
+
+def test_a_block_in_endless_columns_and_rows_is_refused_when_it_is_read(tmp_path: Path) -> None:
+    path = dxf_array(tmp_path)
+    ended = "takes longer than 1 s|has more than 200000 rows"
+    with pytest.raises(AssetFileError, match=ended), opened_asset_file(path, crs="EPSG:4326") as file:
+        for _ in file.rows(RowFaults(leave_out=True)):
+            pass

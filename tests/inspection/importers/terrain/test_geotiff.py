@@ -176,7 +176,8 @@ HOSTILE = [
     (b"II*\0", "cut off"),
     (b"II*\0\x08\0\0\0\xff\xff", "damaged"),
     (b"II+\0\x08\0\0\0" + b"\xff" * 8, "cut off"),
-    (b'<VRTDataset rasterXSize="9"><SourceFilename>/etc/passwd</SourceFilename></VRTDataset>', "neither"),
+    (b'<VRTDataset rasterXSize="9"><SourceFilename>/etc/passwd</SourceFilename></VRTDataset>', "a VRT file"),
+    (b"<GDAL_WMS><Service name='WMS'><ServerUrl>http://127.0.0.1:1/</ServerUrl></Service></GDAL_WMS>", "a WMS file"),
     (b"", "neither"),
 ]
 
