@@ -220,12 +220,14 @@ class NewCodesPage(_OwnCodePage):
 
 @method_decorator(never_cache, name="dispatch")
 class RemovePage(_OwnCodePage):
-    """Removes the second factor. If the organisation requires one, the next login asks to set up another."""
+    """Removes the app. If the organisation requires a second factor and there is no passkey, the next login asks to set up another."""
 
     template_name = "account/second_factor_remove.html"
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
-        return super().get_context_data(**kwargs) | {"is_required": second_factors.is_required_of(self.request.user)}
+        user = self.request.user
+        facts = {"has_passkeys": passkeys_of(user).exists(), "is_required": second_factors.is_required_of(user)}
+        return super().get_context_data(**kwargs) | facts
 
     def done(self, user: User) -> HttpResponse:
         second_factors.remove_authenticator_app(user=user)

@@ -324,3 +324,13 @@ def test_what_an_authenticator_adds_is_not_stored_at_any_length(ida: User) -> No
     made = SoftwareAuthenticator().create(post(owner, "/account/passkeys/options").json()["options"])
     assert post(owner, "/account/passkeys", {"name": "x", "passkey": made | {"more": "x" * MAX_RESPONSE_LENGTH}}).status_code == 400
     assert not passkeys_of(ida).exists()
+
+
+def test_removing_the_app_leaves_the_passkeys_as_the_page_says(ida: User) -> None:
+    with_passkey(ida)
+    with_app(ida)
+    client = at_home(ida)
+    Organisation.objects.update(requires_second_factor=True)
+    assert "one of your passkeys is asked for after your password" in client.get("/second-factor/remove").content.decode()
+    assert client.post("/second-factor/remove", {"code": code_now(), "password": PASSWORD}).status_code == 302
+    assert type_password(stranger(), ida, PASSWORD) == "/sign-in/code"
