@@ -21,6 +21,13 @@ class Approval(models.Model):
     content_sha256 = models.CharField(max_length=64, help_text="of the document in its canonical form")
     approved_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, related_name="+")
     approved_at = models.DateTimeField(db_default=Now(), editable=False)
+    failed_rehearsal_reason = models.CharField(
+        max_length=300,
+        blank=True,
+        default="",
+        db_default="",
+        help_text="why it was approved without a passed rehearsal",
+    )
     revoked_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     revoke_requested_at = models.DateTimeField(null=True, blank=True, help_text="since when UAVs are being rid of it")
     revoked_at = models.DateTimeField(null=True, blank=True)

@@ -25,6 +25,7 @@ class ApprovalSerializer(serializers.Serializer):
     content_sha256 = serializers.CharField(help_text="of the document in its canonical form: what is flown is what has this hash")
     approved_by = serializers.CharField(allow_null=True)
     approved_at = serializers.DateTimeField()
+    failed_rehearsal_reason = serializers.CharField(help_text="why it was approved without a passed rehearsal")
     revoke_requested_at = serializers.DateTimeField(allow_null=True, help_text="since when UAVs are being rid of it")
     revoke_requested_by = serializers.CharField(allow_null=True)
     revoke_reason = serializers.CharField()
@@ -55,6 +56,13 @@ class ApproveInputSerializer(KnownFieldsSerializer):
         min_value=MIN_LEG_M,
         max_value=MAX_LEG_M,
         help_text="autopilots are given points on each leg that is longer, on the same line; without it: legs as planned",
+    )
+    acknowledges_failed_rehearsal = serializers.CharField(
+        required=False,
+        allow_blank=True,
+        default="",
+        max_length=MAX_REASON_LENGTH,
+        help_text="why it is approved although the rehearsal of this plan failed, which is refused otherwise; kept with the approval",
     )
 
 
@@ -267,6 +275,7 @@ def approval_json(approval: Approval | None) -> dict[str, Any] | None:
         "content_sha256": approval.content_sha256,
         "approved_by": approval.approved_by.username if approval.approved_by else None,
         "approved_at": approval.approved_at,
+        "failed_rehearsal_reason": approval.failed_rehearsal_reason,
         "revoke_requested_at": approval.revoke_requested_at,
         "revoke_requested_by": approval.revoked_by.username if approval.revoked_by else None,
         "revoke_reason": approval.revoke_reason,

@@ -78,7 +78,13 @@ class MissionApprove(APIView):
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.ApproveInputSerializer, request)
         with api_problems(has_precondition=expected is not None), refusals():
-            approve_mission(mission=mission, actor=request.user, expected_revision=expected, longest_leg_m=values["longest_leg_m"])
+            approve_mission(
+                mission=mission,
+                actor=request.user,
+                expected_revision=expected,
+                longest_leg_m=values["longest_leg_m"],
+                failed_rehearsal_reason=values["acknowledges_failed_rehearsal"],
+            )
         return answer_mission(request.user, mission_id)
 
 

@@ -16,6 +16,7 @@ from inspection.selectors.planning import PlanningGround, heights_at, planning_r
 from mavlink.vehicle_plan import MissionItem
 from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
+from missions.services.approval.approval import ACKNOWLEDGE_FAILED_REHEARSAL
 from missions.services.commands.refused import RefusalReason, Refused
 from missions.services.missions import note
 from operation.reasons import Reason, Why
@@ -298,9 +299,12 @@ def _forget_old(mission: Mission) -> None:
 
 
 def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
-    """Return why a mission cannot be approved yet, and what to do; empty if no rehearsal is required."""
+    """Return why a mission cannot be approved yet, and what to do.
+
+    Where the organisation requires no rehearsal, a failed one of this plan has to be acknowledged.
+    """
     if not requires_green(mission.organisation_id):
-        return []
+        return _failed_rehearsal(mission)
     try:
         plan = plan_to_fly(mission)
     except Refused as refused:
@@ -324,6 +328,19 @@ def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
         words = _("Zones, terrain, towers or wires about the routes have changed since the mission was rehearsed. Rehearse it again.")
         return [RefusalReason("rehearsal_on_other_ground", words)]
     return []
+
+
+def _failed_rehearsal(mission: Mission) -> list[RefusalReason]:
+    if not Rehearsal.objects.filter(mission=mission.pk, level=AssessmentLevel.FAIL).exists():
+        return []
+    try:
+        newest = newest_finished(mission.pk, plan_to_fly(mission).content_sha256)
+    except Refused:  # it can be flown, but not rehearsed any more
+        return []
+    if newest is None or newest.level != AssessmentLevel.FAIL:
+        return []
+    words = _("The rehearsal of this plan failed. Change the plan, or say why it is approved nevertheless.")
+    return [RefusalReason(ACKNOWLEDGE_FAILED_REHEARSAL, words)]
 
 
 def _is_on_this_ground(rehearsal: Rehearsal, plan: PlanToFly) -> bool:

@@ -382,6 +382,8 @@ export interface components {
             approved_by: string | null;
             /** Format: date-time */
             approved_at: string;
+            /** @description why it was approved although its rehearsal had failed or was missing */
+            failed_rehearsal_reason: string;
             /**
              * Format: date-time
              * @description since when UAVs are being rid of it
@@ -399,6 +401,11 @@ export interface components {
              * @description autopilots are given points on each leg that is longer, on the same line; without it: legs as planned
              */
             longest_leg_m?: number | null;
+            /**
+             * @description why it is approved although the rehearsal of this plan failed, which is refused otherwise; kept with the approval
+             * @default
+             */
+            acknowledges_failed_rehearsal: string;
         };
         Assessment: {
             level: components["schemas"]["AssessmentLevel"];
@@ -2884,6 +2891,8 @@ export interface components {
             approved_by: string | null;
             /** Format: date-time */
             approved_at: string;
+            /** @description why it was approved although its rehearsal had failed or was missing */
+            failed_rehearsal_reason: string;
             /**
              * Format: date-time
              * @description since when UAVs are being rid of it
@@ -4503,6 +4512,8 @@ export interface components {
             /** Format: date-time */
             approved_at: string;
             approved_by: string | null;
+            /** @description why it was approved although its rehearsal had failed or was missing */
+            failed_rehearsal_reason: string;
             /** Format: date-time */
             revoked_at: string | null;
         };

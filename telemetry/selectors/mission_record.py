@@ -193,6 +193,7 @@ def _approval(approval: Approval) -> dict[str, Any]:
         "content_sha256": approval.content_sha256,
         "approved_at": approval.approved_at,
         "approved_by": by.display_name if by else None,
+        "failed_rehearsal_reason": approval.failed_rehearsal_reason,
         "revoked_at": approval.revoked_at,
     }
 

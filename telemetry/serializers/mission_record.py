@@ -14,6 +14,7 @@ class RecordApprovalSerializer(serializers.Serializer):
     content_sha256 = serializers.CharField(help_text="of what was approved, and flown")
     approved_at = serializers.DateTimeField()
     approved_by = serializers.CharField(allow_null=True)
+    failed_rehearsal_reason = serializers.CharField(help_text="why it was approved without a passed rehearsal")
     revoked_at = serializers.DateTimeField(allow_null=True)
 
 

@@ -41,6 +41,7 @@ from workspace.live.changes import publish_live
 from workspace.models import User
 
 REVOKED = "revoked"
+ACKNOWLEDGE_FAILED_REHEARSAL = "acknowledge_failed_rehearsal"  # code of the one reason that a user may overrule
 
 
 def approve_mission(
@@ -49,12 +50,15 @@ def approve_mission(
     actor: User,
     expected_revision: int | None = None,
     longest_leg_m: float | None = None,
+    failed_rehearsal_reason: str = "",
     is_under_way: bool = False,
 ) -> Approval:
     """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason against flying it so.
 
     The checks of later apps are skipped for a mission that takes over while UAVs are in the air, which cannot wait for a rehearsal, and for
     one flown only by simulated twins.
+
+    A failed rehearsal of this plan is among these reasons unless `failed_rehearsal_reason` says why the mission is approved nevertheless.
 
     With `longest_leg_m` autopilots get extra points on each longer leg; the flown lines stay the same.
     """
@@ -66,13 +70,19 @@ def approve_mission(
             raise refuse("not_planned", _("Only a planned mission can be approved."))
         checked_revision = held_ground_revision()
         loaded = mission_of_organisation(held.organisation, held.pk)
-        refuse_for(
-            [*reasons_against(loaded, now=timezone.now()), *([] if is_under_way or _is_flown_by_twins(held) else further_reasons(loaded))]
-        )
+        further = [] if is_under_way or _is_flown_by_twins(held) else further_reasons(loaded)
+        unanswered = [reason for reason in further if not (failed_rehearsal_reason and reason.code == ACKNOWLEDGE_FAILED_REHEARSAL)]
+        refuse_for([*reasons_against(loaded, now=timezone.now()), *unanswered])
         document = approval_document(loaded, longest_leg_m=longest_leg_m)
         if document["ground"]["revision"] != checked_revision:
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))
-        approval = Approval.objects.create(mission=held, document=document, content_sha256=content_sha256(document), approved_by=actor)
+        approval = Approval.objects.create(
+            mission=held,
+            document=document,
+            content_sha256=content_sha256(document),
+            approved_by=actor,
+            failed_rehearsal_reason=failed_rehearsal_reason,
+        )
         held.ground_revision = checked_revision  # the routes have just been checked against it
         held.targets.update(
             state=TargetState.PENDING, state_at=None, state_reason="", state_why=None, reached_at=None, held_s=None, visit_stored_at=None
@@ -80,6 +90,7 @@ def approve_mission(
         held.routes.update(flights_flown=0, has_failed=False)
         facts: dict[str, Any] = {"approval": str(approval.pk), "sha256": approval.content_sha256}
         facts |= {} if longest_leg_m is None else {"longest_leg_m": longest_leg_m}
+        facts |= {"failed_rehearsal_reason": failed_rehearsal_reason} if failed_rehearsal_reason else {}
         change_state(held, MissionState.APPROVED, actor, "approve", facts)
     return approval
 

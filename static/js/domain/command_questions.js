@@ -45,11 +45,12 @@ import {
  *
  * @typedef {object} Question
  * @property {string} title
- * @property {(string | null | false | undefined)[]} lines
+ * @property {(string | Element | null | false | undefined)[]} lines
  * @property {string} act text of the button
  * @property {string} [keep] text of the cancel button
  * @property {string} [hint] the tooltip of the act
- * @property {QuestionField | null} [field]
+ * @property {QuestionField | null | false} [field]
+ * @property {QuestionField | null} [option] a second field, which may stay empty
  * @property {QuestionChoices | null} [choices]
  * @property {{ name: string, words: string }[]} [checks] done with the act unless unticked
  * @property {Safer | null} [safer]

@@ -15,9 +15,20 @@ const EDGE_PX = 12;
  * @returns {Promise<Record<string, any> | null>}
  */
 export function confirmAct(question) {
-  const { title, field = null, choices = null, checks = [], isBack, image, opener, later, overtaken } = question;
+  const {
+    title,
+    field = null,
+    option = null,
+    choices = null,
+    checks = [],
+    isBack,
+    image,
+    opener,
+    later,
+    overtaken,
+  } = question;
   return new Promise((resolve) => {
-    const input = field && fieldInput(field);
+    const fields = [field, option].flatMap((one) => (one ? [{ ...one, input: fieldInput(one) }] : []));
     const group = choices && choiceGroup(choices);
     const lines = h("div", { id: "confirm-lines", class: "confirm-lines", "aria-live": "polite" });
     const acts = createActs(question, (value) => dialog.close(value));
@@ -26,7 +37,7 @@ export function confirmAct(question) {
       { method: "dialog" },
       lines,
       group,
-      input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
+      fields.map(({ input, label }) => h("div", { class: "field" }, h("label", { for: input.id }, label), input)),
       checks.map(checkLine),
       acts.element,
     );
@@ -39,16 +50,16 @@ export function confirmAct(question) {
     );
     /** @param {Pick<Question, "lines" | "act" | "safer">} shown */
     function show(shown) {
-      lines.replaceChildren(...shown.lines.filter((line) => line).map((line) => h("p", {}, line)));
+      const said = shown.lines.filter((line) => line);
+      lines.replaceChildren(...said.map((line) => (line instanceof Element ? line : h("p", {}, line))));
       acts.show(shown);
     }
     show(question);
     dialog.addEventListener("close", () => {
       if (dialog.returnValue !== "go" && dialog.returnValue !== "safer") return resolve(null);
-      const filled = input && { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() };
       const reported = new FormData(form);
       resolve({
-        ...filled,
+        ...Object.fromEntries(fields.map(({ name, input }) => [name, filledIn(input)])),
         ...(choices && { [choices.name]: reported.get(choices.name) }),
         ...Object.fromEntries(checks.map(({ name }) => [name, reported.has(name)])),
         ...(dialog.returnValue === "safer" && { safer: acts.safer() }),
@@ -61,7 +72,8 @@ export function confirmAct(question) {
       acts.block(t("Choose whom it is for first."));
       group?.addEventListener("change", () => acts.block(""));
     }
-    (first ?? (input && field.isNeeded ? input : isBack ? acts.first() : acts.out)).focus();
+    const needed = fields.find(({ isNeeded }) => isNeeded)?.input;
+    (first ?? needed ?? (isBack ? acts.first() : acts.out)).focus();
     let isOver = false;
     later?.then((found) => dialog.open && !isOver && show(found));
     overtaken?.then((why) => {
@@ -135,11 +147,14 @@ function createActs({ keep = t("Cancel"), hint = "", isDanger }, close) {
 const checkLine = ({ name, words }) =>
   h("label", { class: "confirm-check" }, h("input", { type: "checkbox", name, checked: true }), h("span", {}, words));
 
+/** @param {HTMLInputElement} input */
+const filledIn = (input) => (input.type === "number" ? input.valueAsNumber : input.value.trim());
+
 /** @param {QuestionField} field */
 function fieldInput(field) {
   return h("input", {
     class: "input",
-    id: "confirm-field",
+    id: `confirm-${field.name}`,
     name: field.name,
     type: field.type ?? "text",
     value: field.value ?? "",

@@ -59,6 +59,8 @@ export function drawHead(record, onLook) {
   const facts = [
     whenWords(mission),
     approval?.approved_by,
+    approval?.failed_rehearsal_reason &&
+      t("approved without a passed rehearsal: {why}", { why: approval.failed_rehearsal_reason }),
     approval && t("plan hash {hash}", { hash: approval.content_sha256.slice(0, HASH_LETTERS) }),
   ];
   byId("report-facts").textContent = facts.filter(Boolean).join(" · ");

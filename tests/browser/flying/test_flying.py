@@ -52,6 +52,15 @@ def opened(page: Page, mission: str) -> None:
     wait_for_map(page)
 
 
+WHY_WITHOUT_REHEARSAL = "Why it is approved without a passed rehearsal"
+
+
+def approves(page: Page) -> None:
+    """For aircraft, without a rehearsal: the reason is asked for."""
+    page.get_by_role("dialog").get_by_label(WHY_WITHOUT_REHEARSAL).fill("Flown last week, unchanged")
+    answers(page, "Approve")
+
+
 def answers(page: Page, act: str) -> None:
     page.get_by_role("dialog").get_by_role("button", name=act, exact=True).click()
     expect(page.get_by_role("dialog")).to_have_count(0)
@@ -80,9 +89,13 @@ def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission
     state = page.locator("#mission-state")
     expect(state).to_have_text("Planned")
     page.get_by_role("button", name="Approve", exact=True).click()
-    expect(page.get_by_role("dialog", name="Approve “South belt, by night”?")).to_contain_text("2 UAVs fly")
+    question = page.get_by_role("dialog", name="Approve “South belt, by night”?")
+    expect(question).to_contain_text("2 UAVs fly")
+    expect(question).to_contain_text("RehearsalNot rehearsed")
     picture(page, "approve-light")
-    answers(page, "Approve")
+    question.get_by_role("button", name="Approve", exact=True).click()
+    expect(question.get_by_label(WHY_WITHOUT_REHEARSAL)).to_be_focused()
+    approves(page)
 
     expect(state).to_have_text("Approved")
     wait_for_map(page)
@@ -141,7 +154,7 @@ def test_what_is_refused_is_said_with_every_reason(visitor: Visitor, mission: st
     assert posts(page, mission, {"uavs": uavs, "plan": True}, method="PATCH").ok
     opened(page, mission)
     page.get_by_role("button", name="Approve", exact=True).click()
-    answers(page, "Approve")
+    approves(page)
     notices = page.locator("#notices")
     expect(notices).to_contain_text("Not approved.")
     expect(notices).to_contain_text("Petrel would fly as over flat ground")

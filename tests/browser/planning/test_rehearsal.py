@@ -12,7 +12,7 @@ from playwright.sync_api import Page, expect
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.test_report import VIEWS, posts
 from tests.browser.operator_map import asks, wait_for_map
-from tests.browser.pictures import HAS_PICTURES
+from tests.browser.pictures import HAS_PICTURES, THEMES
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
@@ -20,6 +20,7 @@ from tests.cases import long
 
 pytestmark = pytest.mark.browser
 
+WHY_WITHOUT_REHEARSAL = "Why it is approved without a passed rehearsal"
 Picture = Callable[[Page, str], None]
 FLIGHT_MS = 120_000
 STARTS = dict(zip(("Wigeon", "Shoveler"), region.row_starts, strict=True))
@@ -128,6 +129,7 @@ def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_fo
     with asked_for_rehearsals(visitor):
         opened(page, rehearsed)
         page.get_by_role("button", name="Approve", exact=True).click()
+        page.get_by_label(WHY_WITHOUT_REHEARSAL).fill("It will be fine")
         page.get_by_role("dialog").get_by_role("button", name="Approve", exact=True).click()
         expect(page.locator("#notices")).to_contain_text("The rehearsal failed. Change the plan for what its assessment says")
         picture(page, "rehearsal-refused-approval")
@@ -160,8 +162,30 @@ def test_a_mission_into_14_mps_of_wind_is_refused_with_the_reason(visitor: Visit
     picture(page, "rehearsal-wind")
     with asked_for_rehearsals(visitor):
         page.get_by_role("button", name="Approve", exact=True).click()
+        page.get_by_label(WHY_WITHOUT_REHEARSAL).fill("It will be fine")
         page.get_by_role("dialog").get_by_role("button", name="Approve", exact=True).click()
         expect(page.locator("#notices")).to_contain_text("The rehearsal failed.")
+
+
+def test_a_failed_rehearsal_stands_first_in_the_briefing_and_wants_a_reason_that_is_kept(
+    visitor: Visitor, rehearsed: str, picture: Picture
+) -> None:
+    page = opened(visitor.signs_in("opal"), rehearsed)
+    page.get_by_role("button", name="Approve", exact=True).click()
+    briefing = page.get_by_role("dialog").locator(".briefing")
+    expect(briefing.locator("dd").first).to_have_text("Fail: Custom conditions")
+    expect(briefing.locator("dd").first).to_have_class("bad")
+    for theme in THEMES:
+        page.emulate_media(color_scheme=theme)
+        picture(page, f"approve-briefing-{theme}")
+    page.set_viewport_size({"width": 390, "height": 844})
+    picture(page, "approve-briefing-phone")
+    page.get_by_label(WHY_WITHOUT_REHEARSAL).fill("The weak battery was a test")
+    page.get_by_role("dialog").get_by_role("button", name="Approve", exact=True).click()
+    expect(page.locator("#mission-state")).to_have_text("Approved")
+    approval = asks(page, f"/missions/{rehearsed}/approval")
+    assert approval["failed_rehearsal_reason"] == "The weak battery was a test"
+    writes(page, "POST", f"/missions/{rehearsed}/revoke", {"reason": "Other tests plan it"})
 
 
 def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, rehearsed: str) -> None:

@@ -11,7 +11,7 @@ from django.utils import timezone
 from inspection.selectors.planning import planning_read
 from inspection.services import build_graph
 from inspection.services.ground import mark_ground_changed
-from missions.models import Mission, MissionState, UavType
+from missions.models import Approval, Mission, MissionState, UavType
 from missions.selectors.missions import mission_of_organisation
 from missions.services import create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
@@ -22,8 +22,10 @@ from simulation.serializers.words import reason_of
 from simulation.services.plan_to_fly import content_of, plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal, reasons_without_rehearsal, set_rule
 from simulation.tasks import rehearse_mission
+from tests.accounts.users import client_of
 from tests.inspection.ground import tower
 from tests.missions import worlds
+from tests.missions.api import post
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import World, world, zone_around
 from tests.simulation.rehearsals.rehearsed import asked, loaded, rehearsed
@@ -237,6 +239,34 @@ def reasons(mission: Mission, person: User) -> list[str]:
 
 def test_nobody_asks_for_a_rehearsal_unless_told(mission: Mission, person: User) -> None:
     assert reasons(mission, person) == []
+
+
+def test_a_failed_rehearsal_of_this_plan_is_acknowledged_with_a_reason_that_is_kept(mission: Mission, person: User) -> None:
+    rehearsal = rehearsed(mission, person, "as-planned")
+    Rehearsal.objects.filter(pk=rehearsal.pk).update(level="fail")
+    assert reasons(mission, person) == ["acknowledge_failed_rehearsal"]
+    address, client = f"missions/{mission.pk}/approve", client_of(person)
+    assert post(client, address, {}).json()["error"]["code"] == "acknowledge_failed_rehearsal"
+    body = {"acknowledges_failed_rehearsal": "The strong wind is not forecast"}
+    assert post(client, address, body).status_code == 200
+    approval = Approval.objects.get(mission=mission)
+    assert approval.failed_rehearsal_reason == "The strong wind is not forecast"
+    entry = AuditEntry.objects.get(action="approve", subject_id=str(mission.pk))
+    assert entry.after["failed_rehearsal_reason"] == "The strong wind is not forecast"
+
+
+def test_a_failed_rehearsal_of_another_plan_needs_no_acknowledgement(mission: Mission, person: User) -> None:
+    rehearsal = rehearsed(mission, person, "as-planned")
+    Rehearsal.objects.filter(pk=rehearsal.pk).update(level="fail", content_sha256="0" * 64)
+    assert reasons(mission, person) == []
+
+
+def test_no_reason_replaces_a_rehearsal_that_the_organisation_requires(mission: Mission, person: User) -> None:
+    set_rule(organisation=person.organisation, actor=person, requires=True)
+    rehearsal = rehearsed(mission, person, "as-planned")
+    Rehearsal.objects.filter(pk=rehearsal.pk).update(level="fail")
+    with pytest.raises(Refused):
+        approve_mission(mission=mission, actor=person, failed_rehearsal_reason="It will be fine")
 
 
 def test_approval_asks_for_a_rehearsal_of_this_very_plan_that_passed(mission: Mission, person: User) -> None:

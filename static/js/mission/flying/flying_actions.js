@@ -1,15 +1,17 @@
 /** Acts of an operator on a planned mission: approve and revoke. Each asks for confirmation; the mission is flown on the page Fly. */
 
-import { ApiError, freshKey, post, signInAddress } from "../../api.js";
+import { ApiError, freshKey, get, post, signInAddress } from "../../api.js";
+import { h } from "../../dom.js";
 import { flyersOf, isFrozen, isOnItsWay } from "../../domain/flying.js";
 import { returnOf, warningsOfAll } from "../../domain/rtl_check.js";
 import { confirmAct } from "../../page/confirm.js";
 import { t, tn } from "../../text.js";
-import { lengthText } from "../../units.js";
+import { briefingOf, needsReason } from "./briefing.js";
 import { createFlightReading } from "./flight_reading.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { Mission } from "../../api_types.d.ts" */
+/** @import { Mission, Rehearsal, RehearsalPage } from "../../api_types.d.ts" */
+/** @import { BriefingFact } from "./briefing.js" */
 /** @import { Flyer } from "../../domain/flying.js" */
 /** @import { MissionContext, MissionPageData, MissionPageState, MissionStore } from "../types.d.ts" */
 
@@ -30,8 +32,8 @@ export function createFlying(store, { failed, page }) {
 
   return {
     async approve() {
-      await readReturns();
-      await approve(acting);
+      const [rehearsals] = await Promise.all([rehearsalsOf(store), readReturns()]);
+      await approve(acting, rehearsals);
     },
     revoke: () => revoke(acting),
     watch,
@@ -44,6 +46,14 @@ const asSeen = ({ state: { mission } }) => ({
 });
 /** @param {Flyer[]} flyers */
 const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
+
+/** @param {BriefingFact[]} facts */
+const briefingList = (facts) =>
+  h(
+    "dl",
+    { class: "facts briefing" },
+    facts.flatMap(({ term, words, isBad }) => [h("dt", {}, term), h("dd", { class: isBad ? "bad" : "" }, words)]),
+  );
 
 /** @param {MissionPageState["returns"]} returns @param {Flyer[]} flyers */
 function returnsOf(returns, flyers) {
@@ -79,25 +89,40 @@ async function tried({ store, failed, readCommands }, title, act) {
   }
 }
 
-/** @param {Acting} acting */
-async function approve(acting) {
+/** The rehearsals of the mission, the newest first; those on the page where the server does not answer. @param {MissionStore} store */
+async function rehearsalsOf({ state: { mission, rehearsal } }) {
+  try {
+    const { data } = /** @type {Answer<RehearsalPage>} */ (await get(`/missions/${mission?.id}/rehearsals`));
+    return data.results;
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    return rehearsal.list ?? [];
+  }
+}
+
+/** @param {Acting} acting @param {Rehearsal[]} rehearsals */
+async function approve(acting, rehearsals) {
   const { store } = acting;
   const { mission } = store.state;
   if (!mission) return;
   const flyers = flyersOf(mission);
   const simulated = flyers.filter(({ place }) => mission.uavs[place].is_simulated);
+  const isAgainstRehearsal = needsReason(mission, rehearsals);
   const asked = await confirmAct({
     title: t("Approve “{name}”?", { name: mission.name }),
     lines: [
-      tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", {
-        length: lengthText(mission.plan?.total_length_m),
-        names: uavsWords(flyers),
-      }),
+      briefingList(briefingOf(mission, rehearsals)),
+      tn(flyers.length, "{count} UAV flies: {names}.", "{count} UAVs fly: {names}.", { names: uavsWords(flyers) }),
       simulated.length > 0 && t("Simulated, no real aircraft: {names}.", { names: uavsWords(simulated) }),
       t("Approval locks the mission. Only the approved mission can be uploaded to UAVs. The approval can be revoked."),
       ...returnsOf(store.state.returns, flyers),
     ],
-    field: {
+    field: isAgainstRehearsal && {
+      name: "acknowledges_failed_rehearsal",
+      label: t("Why it is approved without a passed rehearsal (kept in the history)"),
+      isNeeded: true,
+    },
+    option: {
       name: "longest_leg_m",
       label: t("Maximum waypoint spacing [m]; blank: as planned"),
       type: "number",
@@ -106,11 +131,12 @@ async function approve(acting) {
       step: "any",
     },
     act: t("Approve"),
-    isBack: true,
+    isBack: !isAgainstRehearsal,
     image: "badge-check",
   });
   if (!asked) return;
-  const wishes = Number.isFinite(asked.longest_leg_m) ? asked : {};
+  const { longest_leg_m, ...reason } = asked;
+  const wishes = Number.isFinite(longest_leg_m) ? { longest_leg_m, ...reason } : reason;
   await tried(acting, t("Not approved."), async () => {
     const { data } = /** @type {Answer<Mission>} */ (
       await post(`/missions/${mission.id}/approve`, wishes, asSeen(store))
