@@ -52,15 +52,6 @@ def opened(page: Page, mission: str) -> None:
     wait_for_map(page)
 
 
-WHY_WITHOUT_REHEARSAL = "Why it is approved without a passed rehearsal"
-
-
-def approves(page: Page) -> None:
-    """For aircraft, without a rehearsal: the reason is asked for."""
-    page.get_by_role("dialog").get_by_label(WHY_WITHOUT_REHEARSAL).fill("Flown last week, unchanged")
-    answers(page, "Approve")
-
-
 def answers(page: Page, act: str) -> None:
     page.get_by_role("dialog").get_by_role("button", name=act, exact=True).click()
     expect(page.get_by_role("dialog")).to_have_count(0)
@@ -93,9 +84,7 @@ def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission
     expect(question).to_contain_text("2 UAVs fly")
     expect(question).to_contain_text("RehearsalNot rehearsed")
     picture(page, "approve-light")
-    question.get_by_role("button", name="Approve", exact=True).click()
-    expect(question.get_by_label(WHY_WITHOUT_REHEARSAL)).to_be_focused()
-    approves(page)
+    answers(page, "Approve")
 
     expect(state).to_have_text("Approved")
     wait_for_map(page)
@@ -154,7 +143,7 @@ def test_what_is_refused_is_said_with_every_reason(visitor: Visitor, mission: st
     assert posts(page, mission, {"uavs": uavs, "plan": True}, method="PATCH").ok
     opened(page, mission)
     page.get_by_role("button", name="Approve", exact=True).click()
-    approves(page)
+    answers(page, "Approve")
     notices = page.locator("#notices")
     expect(notices).to_contain_text("Not approved.")
     expect(notices).to_contain_text("Petrel would fly as over flat ground")
