@@ -172,7 +172,7 @@ def test_a_failed_rehearsal_stands_first_in_the_briefing_and_wants_a_reason_that
 ) -> None:
     page = opened(visitor.signs_in("opal"), rehearsed)
     page.get_by_role("button", name="Approve", exact=True).click()
-    briefing = page.get_by_role("dialog").locator(".briefing")
+    briefing = page.get_by_role("dialog").locator(".approval-facts")
     expect(briefing.locator("dd").first).to_have_text("Fail: Custom conditions")
     expect(briefing.locator("dd").first).to_have_class("bad")
     for theme in THEMES:

@@ -51,7 +51,7 @@ const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 const briefingList = (facts) =>
   h(
     "dl",
-    { class: "facts briefing" },
+    { class: "approval-facts" },
     facts.flatMap(({ term, words, isBad }) => [h("dt", {}, term), h("dd", { class: isBad ? "bad" : "" }, words)]),
   );
 
