@@ -29,7 +29,7 @@ TIMEOUT_S = 5.0  # of silence
 TOTAL_S = 15.0  # of one answer
 MAX_ANSWER_BYTES = 512 * 1024
 CACHED_S = 10 * 60  # discovery document and keys
-REFETCH_INTERVAL_S = 30  # an unknown key makes the keys be fetched again, no more often than this
+REFETCH_INTERVAL_S = 5  # an unknown key makes the keys be fetched again, no more often than this
 MAX_SUBJECT_LENGTH = 191  # of the column
 _ENDPOINTS = ("authorization_endpoint", "token_endpoint", "jwks_uri")
 

@@ -37,7 +37,7 @@ class OpenIdProvider:
     claims: Claims = field(default_factory=lambda: {"sub": "anna"})
     userinfo: Claims = field(default_factory=dict)
     key: rsa.RSAPrivateKey = field(default_factory=new_key)
-    kid: str = "first"
+    kid: str = field(default_factory=lambda: secrets.token_hex(4))
     methods: list[str] | None = field(default_factory=lambda: ["client_secret_post"])
     sign: Callable[[Claims], str] | None = None
     answers: dict[str, tuple[int, bytes]] = field(default_factory=dict)
@@ -49,7 +49,7 @@ class OpenIdProvider:
         return f"http://127.0.0.1:{self.port}"
 
     def changes_key(self) -> None:
-        self.key, self.kid = new_key(), "second"
+        self.key, self.kid = new_key(), secrets.token_hex(4)
 
     def jwk(self) -> Claims:
         return json.loads(jwt.algorithms.RSAAlgorithm.to_jwk(self.key.public_key())) | {"kid": self.kid, "use": "sig"}
@@ -97,8 +97,20 @@ class OpenIdProvider:
         return 200, {"access_token": "an-access-token", "token_type": "Bearer", "id_token": id_token}
 
 
+def settings_of_provider(port: int) -> dict[str, str]:
+    """The environment of an installation that uses the provider at this port."""
+    return {
+        "SPANWISE_OIDC_ISSUER": f"http://127.0.0.1:{port}",
+        "SPANWISE_OIDC_CLIENT_ID": CLIENT_ID,
+        "SPANWISE_OIDC_CLIENT_SECRET": CLIENT_SECRET,
+        "SPANWISE_OIDC_NAME": "Grid ID",
+        "SPANWISE_OIDC_ROLE_CLAIM": "groups",
+        "SPANWISE_OIDC_ROLES": "pilots=operator",
+    }
+
+
 @contextmanager
-def openid_provider() -> Iterator[OpenIdProvider]:
+def openid_provider(port: int = 0) -> Iterator[OpenIdProvider]:
     """Run a provider; its /authorize signs in at once."""
     provider = OpenIdProvider(port=0)
 
@@ -144,7 +156,7 @@ def openid_provider() -> Iterator[OpenIdProvider]:
         def log_message(self, *_args: Any) -> None:
             pass
 
-    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    server = ThreadingHTTPServer(("127.0.0.1", port), Handler)
     provider.port = server.server_address[1]
     thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True)
     thread.start()

@@ -208,11 +208,10 @@ def test_a_changed_key_is_fetched_once_and_then_taken(provider: OpenIdProvider, 
     assert is_in(signs_in(provider))
     provider.changes_key()
     answer = comes_back(Client(), provider)
-    assert answer.status_code == 403, "the keys were fetched less than 30 s ago"
+    assert answer.status_code == 403, "the keys were fetched less than 5 s ago"
     monkeypatch.setattr(identity_provider, "REFETCH_INTERVAL_S", 0)
     assert is_in(signs_in(provider))
     assert provider.asked.count("/keys") == 2
-    provider.kid = "first"
 
 
 def test_the_documents_are_fetched_once_in_ten_minutes(provider: OpenIdProvider) -> None:
@@ -252,7 +251,7 @@ def test_a_provider_that_cannot_be_asked_is_told_on_a_page(
         ("/keys", (500, b"{}"), 503),
         ("/keys", (200, b'{"keys": []}'), 403),
         ("/keys", (200, b'{"keys": "none"}'), 403),
-        ("/keys", (200, b'{"keys": [{"kid": "first", "kty": "RSA", "n": "AQAB", "e": "AQAB"}]}'), 403),
+        ("/keys", (200, b'{"keys": [{"kty": "RSA", "n": "AQAB", "e": "AQAB"}]}'), 403),
         ("/userinfo", (401, b"{}"), 503),
         ("/userinfo", (200, b'{"name": "without a subject"}'), 403),
     ],

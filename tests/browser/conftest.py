@@ -22,6 +22,7 @@ from playwright.sync_api import Error as PlaywrightError
 from accounts.login import REAUTHENTICATION_S
 from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
+from tests.accounts.openid_provider import settings_of_provider
 from tests.browser.pictures import HAS_PICTURES, save_picture
 from tests.browser.regions import region
 
@@ -72,12 +73,14 @@ with connection.cursor() as cursor:
 class Site:
     """Where it is, and who came in when, with their cookies: only the first of their tests within REAUTHENTICATION_S goes through the door.
 
-    `does(code)` runs Python in the installation, for what no page can bring about. Vehicles speak to its gateway by UDP.
+    `does(code)` runs Python in the installation, for what no page can bring about. Vehicles speak to its gateway by UDP. Its identity
+    provider is expected at a port of this machine, where a test may start one.
     """
 
     address: str
     does: Callable[[str], None]
     gateway_port: int
+    provider_port: int
     came_in: dict[str, tuple[float, list[Any]]] = field(default_factory=dict)
 
 
@@ -97,19 +100,19 @@ def _environment(state: Path) -> dict[str, str]:
     return own | {"SPANWISE_VAR": str(state), "SPANWISE_BASE_MAP_TILES": "", "SPANWISE_GATEWAY_TCP": ""}
 
 
-def _site_on(state: Path, port: int, gateway_port: int) -> Site:
+def _site_on(state: Path, port: int, gateway_port: int, provider_port: int) -> Site:
     does = partial(_run, _environment(state), sys.executable, "manage.py", "shell", "-v", "0", "-c")
-    return Site(address=f"http://127.0.0.1:{port}", does=does, gateway_port=gateway_port)
+    return Site(address=f"http://127.0.0.1:{port}", does=does, gateway_port=gateway_port, provider_port=provider_port)
 
 
 def _start_site(state: Path, shared_data: Callable[[str], Path]) -> Site:
     """Start an installation with the region's infrastructure, two zones and no base map from outside."""
     osm_files, zones_file = region.write_files(state, shared_data)
     osm = [argument for path in osm_files for argument in ("--osm", str(path))]
-    port, gateway_port = _free_port(), _free_port(socket.SOCK_DGRAM)
-    environment = _environment(state) | {"SPANWISE_GATEWAY_UDP": f"127.0.0.1:{gateway_port}"}
+    port, gateway_port, provider_port = _free_port(), _free_port(socket.SOCK_DGRAM), _free_port()
+    environment = _environment(state) | {"SPANWISE_GATEWAY_UDP": f"127.0.0.1:{gateway_port}"} | settings_of_provider(provider_port)
     _run(environment, "./run", "--detach", "--port", str(port), *osm, "--zones", str(zones_file))
-    started = _site_on(state, port, gateway_port)
+    started = _site_on(state, port, gateway_port, provider_port)
     started.does(NEW_USERS if region.real_file else NEW_USERS + MADE_DATA)
     return started
 
@@ -121,7 +124,7 @@ def _kept_site(state: Path, shared_data: Callable[[str], Path]) -> Site:
     if note.exists() and subprocess.run(status, capture_output=True, check=False).returncode == 0:  # noqa: S603
         known = json.loads(note.read_text())
         assert known["region"] == region.name, f"{state} has the region {known['region']}"
-        kept = _site_on(state, known["port"], known["gateway_port"])
+        kept = _site_on(state, known["port"], known["gateway_port"], known["provider_port"])
         kept.does(NO_LEFTOVERS)
         return kept
     assert note.exists() or not state.exists(), f"{state} is no site of these tests"
@@ -132,7 +135,8 @@ def _kept_site(state: Path, shared_data: Callable[[str], Path]) -> Site:
     state.mkdir(parents=True)
     note.write_text("{}")
     started = _start_site(state, shared_data)
-    note.write_text(json.dumps({"region": region.name, "port": urlsplit(started.address).port, "gateway_port": started.gateway_port}))
+    ports = {"port": urlsplit(started.address).port, "gateway_port": started.gateway_port, "provider_port": started.provider_port}
+    note.write_text(json.dumps({"region": region.name, **ports}))
     return started
 
 
