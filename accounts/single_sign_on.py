@@ -156,10 +156,11 @@ def _local_user_of_address(claims: Mapping[str, Any], provider: IdentityProvider
 def _new_user(claims: Mapping[str, Any], organisation: Organisation, role: str) -> User:
     wanted = wanted_user_name(claims)
     taken = {name.lower() for name in User.objects.filter(username__istartswith=wanted[:100]).values_list("username", flat=True)}
+    first_of_name, _blank, last_of_name = _text(claims.get("name"), 300).rpartition(" ")
     user = User(
         username=free_user_name(wanted, taken),
-        first_name=_text(claims.get("given_name"), 150),
-        last_name=_text(claims.get("family_name") or ("" if claims.get("given_name") else claims.get("name")), 150),
+        first_name=_text(claims.get("given_name", first_of_name), 150),
+        last_name=_text(claims.get("family_name", last_of_name), 150),
         email=_address(claims.get("email")),
         organisation=organisation,
         role=role,

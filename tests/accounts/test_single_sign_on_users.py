@@ -123,6 +123,21 @@ def test_the_first_sign_in_makes_the_account(provider: OpenIdProvider) -> None:
     assert EmailAddress.objects.filter(user=user, email=ADDRESS, verified=True).exists()
 
 
+@pytest.mark.parametrize(
+    ("claims", "names"),
+    [
+        ({"name": "Anna Maria Keller"}, ("Anna Maria", "Keller")),
+        ({"name": "Anna"}, ("", "Anna")),
+        ({"given_name": "Anna", "family_name": "Keller", "name": "A. K."}, ("Anna", "Keller")),
+        ({"given_name": 7, "family_name": "x" * 400}, ("", "x" * 150)),
+        ({}, ("", "")),
+    ],
+)
+def test_names_are_taken_from_what_there_is(provider: OpenIdProvider, claims: dict[str, Any], names: tuple[str, str]) -> None:
+    user = user_of(signs_in(provider, **claims))
+    assert (user.first_name, user.last_name) == names
+
+
 def test_the_second_sign_in_finds_it_by_the_subject_alone(provider: OpenIdProvider) -> None:
     user = user_of(signs_in(provider, preferred_username="anna", email=ADDRESS))
     again = user_of(signs_in(provider, preferred_username="renamed", email="other@grid.example"))
@@ -140,6 +155,12 @@ def test_the_subject_counts_with_its_issuer(provider: OpenIdProvider) -> None:
 @pytest.mark.parametrize("email", ["no address", "x" * 300 + "@grid.example", 7, None])
 def test_a_wrong_address_is_left_out(provider: OpenIdProvider, email: Any) -> None:
     assert user_of(signs_in(provider, email=email, email_verified=True)).email == ""
+
+
+def test_no_mail_gives_a_password_to_a_user_of_the_provider(provider: OpenIdProvider, mailoutbox: list[Any]) -> None:
+    signs_in(provider, email=ADDRESS, email_verified=True)
+    assert Client().post("/lost-password", {"email": ADDRESS}).status_code == 302
+    assert mailoutbox == []
 
 
 # Roles and organisations

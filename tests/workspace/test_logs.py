@@ -136,6 +136,7 @@ def _tomorrow() -> str:
         ("{'password': 'a b c', 'name': 'vera'}", "{'password': ..., 'name': 'vera'}"),
         ("Cookie: sessionid=abc123; theme=dark", "Cookie: sessionid=...; theme=dark"),
         ("token=abc&next=/missions", "token=...&next=/missions"),
+        ("GET /single-sign-on/callback?code=abc&state=def 302", "GET /single-sign-on/callback?... 302"),
         ("GET /missions?page=2 200", "GET /missions?page=2 200"),
         ("the key of zone 7", "the key of zone 7"),
     ],

@@ -32,6 +32,14 @@ function addressOf({ address }) {
   return `${address}?${new URLSearchParams({ next: here })}`;
 }
 
+/** @param {Pick<ReauthenticationMethods, "has_password" | "single_sign_on">} methods */
+function reasonFor({ has_password, single_sign_on }) {
+  if (has_password || !single_sign_on) return t("You signed in a while ago, and this could outlive the session.");
+  return t("This could outlive the session. {provider} asks you once more, then do it again.", {
+    provider: single_sign_on.name,
+  });
+}
+
 /** @param {ReauthenticationMethods} methods @returns {Promise<boolean>} */
 function confirm({ has_password, passkey_options, single_sign_on }) {
   return new Promise((resolve) => {
@@ -48,7 +56,7 @@ function confirm({ has_password, passkey_options, single_sign_on }) {
       "form",
       { class: "stack", novalidate: true },
       h("h2", { id: "proof-title" }, t("Confirm that it is you")),
-      h("p", {}, t("You signed in a while ago, and this could outlive the session.")),
+      h("p", {}, reasonFor({ has_password, single_sign_on })),
       has_password ? h("div", { class: "field" }, h("label", { for: "proof-password" }, t("Password")), input) : null,
       fault,
       h(
