@@ -114,6 +114,11 @@ class User(AbstractUser):
         return self.get_full_name() or self.username
 
     @property
+    def has_local_password(self) -> bool:
+        """Whether the user signs in with a password of Spanwise."""
+        return bool(settings.LOCAL_SIGN_IN and self.has_usable_password())
+
+    @property
     def is_staff(self) -> bool:  # type: ignore[override]
         """Whether the user may enter the admin."""
         return self.can_curate

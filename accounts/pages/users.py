@@ -34,11 +34,9 @@ class AccountPage(SignedInPage):
         user = self.request.user
         has_one = has_authenticator_app(user)
         provider = identity_provider()
-        has_local_sign_in = local_sign_in_is_on() and not is_of_provider_alone(user)
         return super().get_context_data(**kwargs) | {
             "provider": provider if provider and identity_of(user) else None,
-            "has_local_sign_in": has_local_sign_in,
-            "has_password": has_local_sign_in and user.has_usable_password(),
+            "has_local_sign_in": local_sign_in_is_on() and not is_of_provider_alone(user),
             "has_authenticator_app": has_one,
             "has_passkeys": passkeys_of(user).exists(),
             "second_factor_is_required": is_required_of(user),

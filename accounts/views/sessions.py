@@ -81,7 +81,7 @@ class Reauthentication(APIView):
         at_provider = provider and {"address": reverse("single-sign-on-reauthentication"), "name": provider.name}
         return Response(
             {
-                "has_password": is_local and user.has_usable_password(),
+                "has_password": user.has_local_password,
                 "passkey_options": request_options(user) if is_local and passkeys_of(user).exists() else None,
                 "single_sign_on": at_provider,
             }
