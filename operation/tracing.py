@@ -14,7 +14,7 @@ from operation.version import VERSION
 logger = logging.getLogger(__name__)
 
 VARIABLE = "SPANWISE_TRACING"
-NOT_TRACED = "healthz,readyz,invitation/,new-password/,email-address/"  # a span contains the address, and the last three are mailed links
+NOT_TRACED = "healthz,readyz,invitation/,new-password/,email-address/,single-sign-on/callback"  # spans hold addresses
 _MISSING = "%s is set, but OpenTelemetry is not installed (requirements-tracing.txt): nothing is traced"
 
 _begun = False

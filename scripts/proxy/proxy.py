@@ -238,7 +238,9 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     )
     api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web, again=again)
     of_uavs = _proxied("^~ /api/v1/uav-link/", "api", headers, scheme, to=uav_link, again=again)
-    links = _proxied("~ ^/(new-password|invitation|email-address)/", "page", headers, scheme, to=web, faults="emerg", again=again)
+    links = _proxied(
+        "~ ^/(new-password|invitation|email-address|single-sign-on)/", "page", headers, scheme, to=web, faults="emerg", again=again
+    )
     pages = _proxied("/", "page", headers, scheme, to=web, again=again)
     return f"""{"user root;" if os.geteuid() == 0 else ""}
 daemon off;

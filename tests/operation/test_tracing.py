@@ -20,9 +20,11 @@ ONE_REQUEST = """
 from config.wsgi import application
 from opentelemetry import trace
 from io import BytesIO
-for path in ("/sign-in", "/invitation/holder-of-the-link", "/email-address/holder-of-the-link", "/healthz"):
+for address in ("/sign-in", "/invitation/holder-of-the-link", "/email-address/holder-of-the-link",
+                "/single-sign-on/callback?code=holder-of-the-link", "/healthz"):
+    path, _sign, query = address.partition("?")
     environ = {"REQUEST_METHOD": "GET", "PATH_INFO": path, "SERVER_NAME": "localhost", "SERVER_PORT": "80", "wsgi.input": BytesIO(),
-               "wsgi.url_scheme": "http", "HTTP_HOST": "localhost", "QUERY_STRING": "", "wsgi.errors": BytesIO(),
+               "wsgi.url_scheme": "http", "HTTP_HOST": "localhost", "QUERY_STRING": query, "wsgi.errors": BytesIO(),
                "HTTP_AUTHORIZATION": "Bearer spw_secret-of-somebody"}
     b"".join(application(environ, lambda *_: None))
 trace.get_tracer_provider().shutdown()

@@ -22,6 +22,8 @@ form.addEventListener("submit", async (event) => {
   form.submit();
 });
 
+document.documentElement.dataset.loaded = "true";
+
 async function options() {
   const inPage = document.getElementById("passkey-options");
   if (inPage) return JSON.parse(inPage.textContent ?? "");

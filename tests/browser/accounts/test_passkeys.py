@@ -16,7 +16,7 @@ SIGNED_IN_AN_HOUR_AGO = """
 from datetime import timedelta
 from django.utils.timezone import now
 from workspace.models import BrowserSession
-BrowserSession.objects.filter(user__username="petra").update(began_at=now() - timedelta(hours=1))
+BrowserSession.objects.filter(user__username="paula").update(began_at=now() - timedelta(hours=1))
 """
 
 
@@ -33,11 +33,11 @@ def with_authenticator(page: Page) -> CDPSession:
 
 
 def test_a_passkey_is_added_signs_in_confirms_and_is_removed(visitor: Visitor, picture: Picture) -> None:
-    newcomer(visitor, "petra")
+    newcomer(visitor, "paula")
     context = visitor.new_context(base_url=visitor.site.address.replace("127.0.0.1", "localhost"))
     page = context.new_page()
     with_authenticator(page)
-    types_password(page, "petra")
+    types_password(page, "paula")
     expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
     account(page)
     passkeys = page.get_by_role("list", name="Passkeys")
@@ -59,7 +59,7 @@ def test_a_passkey_is_added_signs_in_confirms_and_is_removed(visitor: Visitor, p
     expect(passkeys).to_contain_text(re.compile("used .*now|used .*ago", re.IGNORECASE))
 
     context.clear_cookies()
-    types_password(page, "petra")
+    types_password(page, "paula")
     expect(page.get_by_role("heading", name="One more thing")).to_be_visible()
     pictures(page, picture, "sign-in-code-passkey-phone")
     page.get_by_role("button", name="Use a passkey").click()

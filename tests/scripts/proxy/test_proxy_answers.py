@@ -74,6 +74,7 @@ def test_no_log_has_the_link_to_a_new_password(site: tuple[str, Path]) -> None:
     assert fetch(f"{site[0]}/new-password/MQ/c1x-secret")[0] == 503
     assert fetch(f"{site[0]}/invitation/c1x-secret")[0] == 503
     assert fetch(f"{site[0]}/email-address/c1x-secret")[0] == 503
+    assert fetch(f"{site[0]}/single-sign-on/callback?code=c1x-secret")[0] == 503
     assert fetch(f"{site[0]}/lost-password?next=unseen")[0] == 503
     log = site[1] / "proxy.log"
     deadline = time.monotonic() + 10
