@@ -36,7 +36,7 @@ class GdalRefusal(ValueError):
 class Limits:
     """Limits of the child. answer_s: of the wall clock, for one answer."""
 
-    memory_mib: int = 768  # of addresses, 200 MiB of which are libraries
+    memory_mib: int = 512  # of addresses, 200 MiB of which are libraries
     processor_s: int = 1
     processor_s_per_mib: float = 3.0  # of the file, as for reading it here
     most_processor_s: int = 600

@@ -22,7 +22,7 @@ from operation.reasons import Reason
 MAX_POSTS = 200_000_000
 MAX_PARTS = 1_000_000
 MAX_PART_BYTES = 16 * 1024 * 1024  # unpacked
-MAX_PLAIN_PART_BYTES = 256 * 1024 * 1024  # of a part that is not packed
+MAX_PLAIN_PART_BYTES = 128 * 1024 * 1024  # of a part that is not packed
 POSTS_PER_PROCESSOR_S = 4_000_000  # a third of what is measured, as posts are read several times where they are sampled anew
 _READ = {"", "LZW", "DEFLATE", "PACKBITS", "ZSTD", "LZMA", "LERC", "LERC_DEFLATE", "LERC_ZSTD"}
 _PER_DATASET_MASK = 0x02  # GMF_PER_DATASET
