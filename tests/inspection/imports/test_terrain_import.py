@@ -91,7 +91,7 @@ def test_files_that_are_no_terrain_are_refused(tmp_path):
         "voids.tif": (lambda path: geotiff(path, np.full((4, 4), -9999.0, dtype=np.float32)), "only voids"),
         "nan.tif": (lambda path: geotiff(path, np.full((4, 4), math.nan, dtype=np.float32)), "only voids"),
         "text.tif": (lambda path: path.write_text("II*, but no"), "neither"),
-        "map.vrt": (lambda path: path.write_text("<VRTDataset rasterXSize='2' rasterYSize='2'/>"), "neither"),
+        "map.vrt": (lambda path: path.write_text("<VRTDataset rasterXSize='2' rasterYSize='2'/>"), "a VRT file"),
         "far.tif": (lambda path: geotiff(path, flat, origin=(500.0, 95.0)), "beyond"),
     }
     for name, (make, message) in cases.items():
