@@ -135,7 +135,7 @@ def test_main_pages_are_in_the_language_of_the_browser(
     page.set_default_timeout(45_000)
     reader.opens(page, "/sign-in")
     picture(page, f"sign-in-{language}")
-    page.locator("#id_username").fill("opal")
+    page.locator("#id_login").fill("opal")
     page.locator("#id_password").fill(PASSWORD)
     page.get_by_role("button", name=sign_in).click()
     page.locator("html[data-loaded]").wait_for(state="attached")
