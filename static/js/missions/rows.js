@@ -2,6 +2,7 @@
 
 import { find, h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";
+import { plannedChip } from "../domain/planned_state.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
@@ -119,7 +120,7 @@ export function missionRow(mission, { canPlan, acts }) {
     canPlan && choiceCell(mission, acts),
     h("td", { class: "drawing" }, sketch(mission)),
     name,
-    h("td", { class: "state" }, h("span", { class: `chip ${mission.state}` }, STATES[mission.state] ?? mission.state)),
+    h("td", { class: "state" }, stateChip(mission)),
     targetsCell(mission),
     uavsCell(mission),
     h("td", { class: "number distance" }, lengthText(mission.total_length_m)),
@@ -255,3 +256,10 @@ const quickButton = (mission, label, image, act) =>
     },
     icon(image),
   );
+
+/** @param {Pick<MissionSummary, "state" | "target_count" | "unassigned_count">} mission */
+function stateChip({ state, target_count, unassigned_count }) {
+  if (state !== "planned") return h("span", { class: `chip ${state}` }, STATES[state] ?? state);
+  const { className, words } = plannedChip(target_count, unassigned_count);
+  return h("span", { class: className }, words);
+}

@@ -134,6 +134,7 @@ def test_a_plan_that_reaches_no_target_cannot_be_approved(visitor: Visitor, miss
     opened(page, mission)
     approve = page.get_by_role("button", name="Approve", exact=True)
     expect(approve).to_be_disabled()
+    expect(page.locator("#mission-state")).to_have_text("Not possible")
     expect(approve).to_have_attribute("title", "The plan reaches no target: there is nothing to approve.")
 
 

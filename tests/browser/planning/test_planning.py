@@ -101,6 +101,7 @@ def test_a_target_that_is_not_reached_says_why_and_what_would_help(visitor: Visi
     opens_mission(page, "Too far", more=[{"position": region.far_away}])
     notice = page.locator("#notices .notice").filter(has_text="is not reached")
     expect(notice).to_contain_text("It is more than 10 km from the network.")
+    expect(page.locator("#mission-state")).to_have_text("Partly planned, 8 of 9")
     notice.get_by_role("button", name="Why?").click()
     why = page.get_by_role("complementary", name=re.compile("Why .* is not reached"))
     expect(why).to_contain_text(re.compile(r"The nearest line, railway or bridge is \d+\.\d\skm away"))

@@ -4,6 +4,7 @@ import { openAlertLimits } from "../../alert_limits/dialog.js";
 import { ApiError } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
 import { groundCauses } from "../../domain/flying.js";
+import { plannedChip } from "../../domain/planned_state.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
 import { markSimulated } from "../../simulated.js";
@@ -142,8 +143,10 @@ function drawHead(state, canPlan) {
   const ownState = isPlanCurrent(state) ? "planned" : "draft";
   const name = mission && !["draft", "planned"].includes(mission.state) ? mission.state : ownState;
   const chip = byId("mission-state");
-  chip.className = `chip ${name}`;
-  chip.textContent = STATE_WORDS[name];
+  const missed = name === "planned" && state.plan ? unreachedOf(state.plan).length : 0;
+  const planned = plannedChip(state.selection.targets.length, missed);
+  chip.className = name === "planned" ? planned.className : `chip ${name}`;
+  chip.textContent = name === "planned" ? planned.words : STATE_WORDS[name];
   const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
   markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
   chip.hidden = !canPlan && !mission; // only the map: there is no content for a draft

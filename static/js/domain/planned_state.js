@@ -1,0 +1,17 @@
+/** The state of a planned mission, told truly: whether its plan reaches all, some or none of its targets. */
+
+import { t } from "../text.js";
+
+/**
+ * The chip of a mission whose state is "planned".
+ *
+ * @param {number} targets of the mission
+ * @param {number} missed of these, how many the plan does not reach
+ * @returns {{ className: string, words: string }}
+ */
+export function plannedChip(targets, missed) {
+  if (!missed || !targets) return { className: "chip planned", words: t("Planned") };
+  if (missed >= targets) return { className: "chip failed", words: t("Not possible") };
+  const words = t("Partly planned, {reached} of {targets}", { reached: targets - missed, targets });
+  return { className: "chip aborted", words };
+}
