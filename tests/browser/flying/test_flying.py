@@ -144,6 +144,11 @@ def test_what_is_refused_is_said_with_every_reason(visitor: Visitor, mission: st
     assert posts(page, mission, {"uavs": uavs, "plan": True}, method="PATCH").ok
     opened(page, mission)
     page.get_by_role("button", name="Approve", exact=True).click()
+    why = page.get_by_label("Why it is approved without a passed rehearsal")  # aircraft that no simulation has flown
+    expect(why).to_be_focused()
+    page.get_by_role("dialog").get_by_role("button", name="Approve", exact=True).click()
+    expect(page.get_by_role("dialog")).to_be_visible()
+    why.fill("Flown last week, unchanged")
     answers(page, "Approve")
     notices = page.locator("#notices")
     expect(notices).to_contain_text("Not approved.")
