@@ -382,7 +382,7 @@ export interface components {
             approved_by: string | null;
             /** Format: date-time */
             approved_at: string;
-            /** @description why it was approved although its rehearsal had failed or was missing */
+            /** @description why it was approved without a passed rehearsal */
             failed_rehearsal_reason: string;
             /**
              * Format: date-time
@@ -2891,7 +2891,7 @@ export interface components {
             approved_by: string | null;
             /** Format: date-time */
             approved_at: string;
-            /** @description why it was approved although its rehearsal had failed or was missing */
+            /** @description why it was approved without a passed rehearsal */
             failed_rehearsal_reason: string;
             /**
              * Format: date-time
@@ -4512,7 +4512,7 @@ export interface components {
             /** Format: date-time */
             approved_at: string;
             approved_by: string | null;
-            /** @description why it was approved although its rehearsal had failed or was missing */
+            /** @description why it was approved without a passed rehearsal */
             failed_rehearsal_reason: string;
             /** Format: date-time */
             revoked_at: string | null;
