@@ -12,6 +12,7 @@ from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
 from django.conf import settings
 from django.db import transaction
 from django.http import HttpRequest
+from fido2.cose import CoseKey, UnsupportedKey
 from fido2.utils import websafe_decode
 from fido2.webauthn import CollectedClientData
 
@@ -50,6 +51,8 @@ def add_passkey(*, request: HttpRequest, user: User, name: str, credential: Any)
         raise PasskeyRefused
     form = AddWebAuthnForm({"name": name, "credential": text, "passwordless": True}, user=user)
     _check(form)
+    if isinstance(_public_key_of(form.cleaned_data["credential"]), UnsupportedKey):
+        raise PasskeyRefused  # of an algorithm that was not offered: it could sign nothing that is checked here
     with transaction.atomic():
         User.objects.select_for_update().get(pk=user.pk)
         if passkeys_of(user).count() >= MAX_PASSKEYS:
@@ -91,6 +94,11 @@ def _check(form: Any) -> Any:
     except _DAMAGED as error:
         raise PasskeyRefused from error
     raise PasskeyRefused
+
+
+def _public_key_of(credential: Any) -> CoseKey:
+    data = auth.parse_registration_response(credential).response.attestation_object.auth_data.credential_data
+    return data.public_key
 
 
 def _origin_of(credential: Any) -> str:

@@ -90,7 +90,8 @@ class Reauthentication(APIView):
     @extend_schema(
         operation_id="prove_oneself",
         summary="Re-authenticate",
-        description="For 15 min this session may then make tokens and passkeys, and end sessions. Five tries in a quarter of an hour.",
+        description="For 15 min this session may then make tokens and passkeys, and end sessions."
+        " Five passwords may be tried in a quarter of an hour.",
         request=ReauthenticationSerializer,
         responses={204: OpenApiResponse(description="It is the password, or one of the user’s passkeys."), 403: LOCAL_SIGN_IN_OFF},
     )

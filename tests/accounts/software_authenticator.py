@@ -7,7 +7,7 @@ from typing import Any
 
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.hazmat.primitives.hashes import SHA256
-from fido2.cose import ES256
+from fido2.cose import ES256, CoseKey
 from fido2.utils import websafe_decode, websafe_encode
 from fido2.webauthn import AttestationObject, AttestedCredentialData, AuthenticatorData, CollectedClientData
 
@@ -21,12 +21,13 @@ class SoftwareAuthenticator:
         self.key = ec.generate_private_key(ec.SECP256R1())
         self.credential_id = token_bytes(16)
         self.user_handle = ""
+        self.public_key: CoseKey = ES256.from_cryptography_key(self.key.public_key())
 
     def create(self, options: dict[str, Any]) -> dict[str, Any]:
         """The JSON form of a new credential."""
         self.user_handle = options["user"]["id"]
         client_data = self._client_data(CollectedClientData.TYPE.CREATE, options["challenge"])
-        credential = AttestedCredentialData.create(bytes(16), self.credential_id, ES256.from_cryptography_key(self.key.public_key()))
+        credential = AttestedCredentialData.create(bytes(16), self.credential_id, self.public_key)
         data = AuthenticatorData.create(self._host_hash(), self.flags | ATTESTED, 0, credential)
         attestation = AttestationObject.create("none", data, {})
         response = {"clientDataJSON": websafe_encode(client_data), "attestationObject": websafe_encode(bytes(attestation))}

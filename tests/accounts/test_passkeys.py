@@ -182,6 +182,13 @@ def test_a_passkey_that_is_made_wrongly_is_not_kept(ida: User, wrong: str) -> No
     assert not passkeys_of(ida).exists()
 
 
+def test_a_key_of_an_algorithm_that_was_not_offered_is_no_second_factor(ida: User) -> None:
+    key = SoftwareAuthenticator()
+    key.public_key = UnsupportedKey(dict(key.public_key) | {3: -9_999})
+    assert add(at_home(ida), key) == 400
+    assert not passkeys_of(ida).exists()
+
+
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=20),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=10), inner, max_size=3),
