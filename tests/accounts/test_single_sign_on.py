@@ -263,6 +263,12 @@ def test_a_provider_that_fails_later_is_told_on_a_page(provider: OpenIdProvider,
     assert not is_in(client)
 
 
+def test_a_discovery_document_of_another_issuer_is_refused(provider: OpenIdProvider) -> None:
+    known = provider.discovery() | {"issuer": f"{provider.issuer}/"}
+    provider.answers["/.well-known/openid-configuration"] = (200, json.dumps(known).encode())
+    assert Client().get("/single-sign-on").status_code == 403
+
+
 def test_endpoints_without_tls_are_refused(provider: OpenIdProvider) -> None:
     known = provider.discovery() | {"token_endpoint": "http://grid.example/token"}
     provider.answers["/.well-known/openid-configuration"] = (200, json.dumps(known).encode())
