@@ -22,7 +22,7 @@ from playwright.sync_api import Error as PlaywrightError
 from accounts.login import REAUTHENTICATION_S
 from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
-from tests.accounts.openid_provider import settings_of_provider
+from tests.accounts.single_sign_on.openid_provider import settings_of_provider
 from tests.browser.pictures import HAS_PICTURES, save_picture
 from tests.browser.regions import region
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.accounts.openid_provider import OpenIdProvider, openid_provider
+from tests.accounts.single_sign_on.openid_provider import OpenIdProvider, openid_provider
 from tests.browser.accounts.test_account import account
 from tests.browser.accounts.test_sign_in_page import pictures
 from tests.browser.conftest import Site, Visitor

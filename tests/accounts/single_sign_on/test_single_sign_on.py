@@ -21,7 +21,7 @@ from accounts import identity_provider
 from accounts.identity_claims import IdentityProvider
 from accounts.identity_provider import documents
 from tests.accounts.authenticator_app import is_in
-from tests.accounts.openid_provider import (
+from tests.accounts.single_sign_on.openid_provider import (
     CLIENT_ID,
     CLIENT_SECRET,
     OpenIdProvider,

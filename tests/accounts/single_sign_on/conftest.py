@@ -8,7 +8,7 @@ from django.core.cache import cache
 
 from accounts.identity_claims import IdentityProvider
 from accounts.identity_provider import documents
-from tests.accounts.openid_provider import CLIENT_ID, CLIENT_SECRET, OpenIdProvider, openid_provider
+from tests.accounts.single_sign_on.openid_provider import CLIENT_ID, CLIENT_SECRET, OpenIdProvider, openid_provider
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from django.utils import timezone
 
 from accounts.login import PROVED_AT, REAUTHENTICATION_S
 from tests.accounts.authenticator_app import is_in, with_app
-from tests.accounts.openid_provider import OpenIdProvider, comes_back, signs_in, user_of
+from tests.accounts.single_sign_on.openid_provider import OpenIdProvider, comes_back, signs_in, user_of
 from tests.accounts.users import a_user, client_of
 from workspace.api_tokens import create_api_token
 from workspace.models import Role, User

@@ -11,7 +11,7 @@ from django.test import Client
 from accounts.identity_claims import IdentityProvider, free_user_name, merged, organisations_of, role_of, wanted_user_name
 from accounts.pages.password import LostPasswordForm
 from tests.accounts.authenticator_app import is_in
-from tests.accounts.openid_provider import OpenIdProvider, comes_back, heading, signs_in, user_of
+from tests.accounts.single_sign_on.openid_provider import OpenIdProvider, comes_back, heading, signs_in, user_of
 from tests.accounts.users import a_user
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, Organisation, Role, SignInEntry, SignInOutcome, User
 
