@@ -48,16 +48,16 @@ class SecondFactorStage(LoginStage):
     urlname = "mfa_authenticate"
 
     def handle(self) -> tuple[HttpResponse | None, bool]:
-        return self._page() if self._is_needed() else None, True
+        user = self.login.user
+        if not isinstance(user, User) or came_by_single_sign_on(self.request, user):  # second factors are the provider's matter then
+            return None, True
+        return self._page() if self._is_needed(user) else None, True
 
     def is_resumable(self, request: HttpRequest) -> bool:
         """No: the sign-in page stays open for another user."""
         return False
 
-    def _is_needed(self) -> bool:
-        user = self.login.user
-        if not isinstance(user, User) or came_by_single_sign_on(self.request, user):  # second factors are the provider's matter then
-            return False
+    def _is_needed(self, user: User) -> bool:
         return has_second_factor(user) and not did_use_passwordless_login(self.request, user)
 
     def _page(self) -> HttpResponse:
@@ -72,10 +72,7 @@ class SetUpStage(SecondFactorStage):
     key = "set_up_second_factor"
     urlname = "second-factor"
 
-    def _is_needed(self) -> bool:
-        user = self.login.user
-        if not isinstance(user, User) or came_by_single_sign_on(self.request, user):
-            return False
+    def _is_needed(self, user: User) -> bool:
         return is_required_of(user) and not has_second_factor(user)
 
 
