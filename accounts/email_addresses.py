@@ -10,7 +10,7 @@ from django.urls import reverse
 from django.utils.translation import gettext as _
 
 from accounts.invitations import mail_leaves_here, public_address
-from workspace.audit import record_change, user_facts
+from workspace.audit import record_account_event
 from workspace.models import User
 
 
@@ -72,11 +72,7 @@ def _verify(request: HttpRequest, address: EmailAddress) -> User:
         raise AddressTaken
     user: User = address.user
     User.objects.filter(pk=user.pk).update(email=stored)  # as it was typed
-    facts = user_facts(user)
-    record_change(
-        organisation=user.organisation, actor=user, action="address verified", subject_type="user", subject_id=user.pk,
-        before=facts, after=facts,
-    )  # fmt: skip
+    record_account_event(user, user, "address verified")
     return user
 
 

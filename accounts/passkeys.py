@@ -16,7 +16,8 @@ from fido2.cose import CoseKey, UnsupportedKey
 from fido2.utils import websafe_decode
 from fido2.webauthn import CollectedClientData
 
-from accounts.second_factors import passkeys_of, record
+from accounts.second_factors import passkeys_of
+from workspace.audit import record_account_event
 from workspace.models import User
 
 MAX_PASSKEYS = 20  # of one user
@@ -58,14 +59,14 @@ def add_passkey(*, request: HttpRequest, user: User, name: str, credential: Any)
         if passkeys_of(user).count() >= MAX_PASSKEYS:
             raise TooManyPasskeys
         added: Authenticator = flows.add_authenticator(request, form.cleaned_data["name"], form.cleaned_data["credential"])[0]
-        record(user, user, "passkey added")
+        record_account_event(user, user, "passkey added")
     return added
 
 
 def remove_passkey(*, passkey: Authenticator, user: User) -> None:
     with transaction.atomic():
         passkey.delete()
-        record(user, user, "passkey removed")
+        record_account_event(user, user, "passkey removed")
 
 
 def passkey_of_response(credential: str) -> Authenticator:

@@ -16,7 +16,7 @@ from django.utils import timezone
 
 from accounts.services import end_sessions
 from workspace.api_tokens import hash_token
-from workspace.audit import record_change, user_facts
+from workspace.audit import record_account_event, record_change
 from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
 from workspace.models import Organisation, RecoveryCode, SecondFactor, User
 
@@ -137,7 +137,7 @@ def set_up(*, user: User, seed: bytes, code: str) -> list[str]:
         SecondFactor.objects.filter(user=user).delete()
         factor = SecondFactor.objects.create(user=user, sealed_seed=encrypt(seed, of=_name_of(user)), last_step=step)
         codes = _keep_recovery_codes(factor)
-        record(user, user, "second factor set up")
+        record_account_event(user, user, "second factor set up")
     return codes
 
 
@@ -167,7 +167,7 @@ def renew_recovery_codes(*, user: User) -> list[str]:
         factor = SecondFactor.objects.select_for_update().get(user=user)
         factor.recovery_codes.all().delete()
         codes = _keep_recovery_codes(factor)
-        record(user, user, "recovery codes made")
+        record_account_event(user, user, "recovery codes made")
     return codes
 
 
@@ -178,7 +178,7 @@ def recovery_codes_left(user: User) -> int:
 def remove_authenticator_app(*, user: User) -> None:
     with transaction.atomic():
         SecondFactor.objects.filter(user=user).delete()
-        record(user, user, "second factor removed")
+        record_account_event(user, user, "second factor removed")
 
 
 def reset_second_factors(*, user: User, actor: User | None) -> bool:
@@ -186,7 +186,7 @@ def reset_second_factors(*, user: User, actor: User | None) -> bool:
     with transaction.atomic():
         deleted = SecondFactor.objects.filter(user=user).delete()[0] + passkeys_of(user).delete()[0]
         if deleted:
-            record(user, actor, "second factor reset")
+            record_account_event(user, actor, "second factor reset")
             end_sessions(user=user, actor=actor)
     return bool(deleted)
 
@@ -228,13 +228,6 @@ def encrypt_with_current_key() -> int:
     return count
 
 
-def record(user: User, actor: User | None, action: str) -> None:
-    facts = user_facts(user)
-    record_change(
-        organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts
-    )
-
-
 def _name_of(user: User) -> str:
     return f"second factor of {user.pk}"
 
@@ -267,7 +260,7 @@ def _take_recovery_code(factor: SecondFactor, code: str) -> bool:
     unused = factor.recovery_codes.filter(code_sha256=hash_token(code), used_at=None)
     if not unused.update(used_at=timezone.now()):
         return False
-    record(factor.user, factor.user, "recovery code used")
+    record_account_event(factor.user, factor.user, "recovery code used")
     return True
 
 

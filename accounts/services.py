@@ -12,7 +12,7 @@ from django.utils import timezone
 
 from accounts.users import save_user
 from workspace.api_tokens import create_api_token
-from workspace.audit import record_change, user_facts
+from workspace.audit import record_account_event, record_change
 from workspace.models import ApiToken, Role, User
 
 MAX_TOKENS = 50  # of one user, valid at the same time
@@ -44,7 +44,7 @@ def change_password(*, user: User, password: str, ends_tokens: bool = False) -> 
     with transaction.atomic():
         user.set_password(password)
         user.save(update_fields=["password"])
-        _record(user, user, "password changed")
+        record_account_event(user, user, "password changed")
         if ends_tokens:
             revoke_tokens(user=user, actor=user)
 
@@ -61,7 +61,7 @@ def end_sessions(*, user: User, actor: User | None) -> None:
     with transaction.atomic():
         User.objects.filter(pk=user.pk).update(session_generation=F("session_generation") + 1)
         user.refresh_from_db(fields=["session_generation"])
-        _record(user, actor, "signed out everywhere")
+        record_account_event(user, actor, "signed out everywhere")
 
 
 def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None = None, actor: User | None = None) -> tuple[ApiToken, str]:
@@ -101,13 +101,6 @@ def change_user(*, user_id: int, actor: User, seen_revision: int | None, **value
         for name, value in values.items():
             setattr(user, name, value)
         return save_user(user=user, actor=actor)
-
-
-def _record(user: User, actor: User | None, action: str) -> None:
-    facts = user_facts(user)
-    record_change(
-        organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts
-    )
 
 
 def _record_token(token: ApiToken, actor: User, action: str, facts: dict[str, Any]) -> None:

@@ -20,7 +20,7 @@ from accounts.identity_claims import IdentityProvider, free_user_name, organisat
 from accounts.identity_provider import identity_provider
 from accounts.users import NoAdministratorLeft, save_user
 from workspace.api.errors import ApiProblem
-from workspace.audit import record_change, user_facts
+from workspace.audit import record_account_event
 from workspace.leases import lock_until_end
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
 
@@ -125,11 +125,7 @@ def _first_sign_in(claims: Mapping[str, Any], provider: IdentityProvider, organi
     else:
         _follow(user, organisation, role)
     SocialAccount.objects.create(provider=provider.issuer, uid=claims["sub"], user=user)
-    facts = user_facts(user)
-    record_change(
-        organisation=organisation, actor=None, action="single sign-on linked", subject_type="user", subject_id=user.pk,
-        before=facts, after=facts,
-    )  # fmt: skip
+    record_account_event(user, None, "single sign-on linked")
     return user
 
 

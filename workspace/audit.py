@@ -30,6 +30,14 @@ def record_change(
     )
 
 
+def record_account_event(user: User, actor: User | None, action: str) -> None:
+    """Record what happened to an account whose facts stay as they are."""
+    facts = user_facts(user)
+    record_change(
+        organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts
+    )
+
+
 def user_facts(user: User) -> dict[str, Any]:
     """Return the facts of an account for the history; never its password."""
     names = ("username", "first_name", "last_name", "email", "role", "is_active", "is_installation_operator")

@@ -12,7 +12,7 @@ from django.db.models import Exists, OuterRef
 from django.utils import timezone
 from django.utils.crypto import constant_time_compare
 
-from workspace.audit import record_change, user_facts
+from workspace.audit import record_account_event
 from workspace.models import BrowserSession, User
 
 NOTED_EVERY = timedelta(minutes=1)
@@ -85,18 +85,9 @@ def _lets_in(session: Session, user: User) -> bool:
 
 def end_session(row: BrowserSession, *, actor: User) -> None:
     """End a session: at its next request, and within 5 s for its websockets."""
-    facts = user_facts(row.user)
     with transaction.atomic():
         Session.objects.filter(pk=row.session_id).delete()
-        record_change(
-            organisation=row.user.organisation,
-            actor=actor,
-            action="session ended",
-            subject_type="user",
-            subject_id=row.user_id,
-            before=facts,
-            after=facts,
-        )
+        record_account_event(row.user, actor, "session ended")
 
 
 def forget_ended_sessions() -> int:
