@@ -137,11 +137,21 @@ def airspace_on(
     return Airspace(context, graph, flyable, with_obstacles(zones, walls), leg_zones, access, is_by_length)
 
 
-ZoneName = str | Reason  # a name as stated, or what stands for one
+@dataclass(frozen=True)
+class MetZone:
+    """A zone with its name as stated, or what stands for one; then there is no id."""
+
+    name: str | Reason
+    id: int | None = None
+
+    @property
+    def params(self) -> dict[str, object]:
+        """Return the params with which a reason names it."""
+        return {"zone": self.name} if self.id is None else {"zone": self.name, "zone_id": self.id}
 
 
-def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> ZoneName | None:
-    """Return the name of the zone that holds the position between this height above ground and that of the flight to it.
+def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> MetZone | None:
+    """Return the zone that holds the position between this height above ground and that of the flight to it.
 
     A place nearer to a zone than the clearance counts as inside it.
     """
@@ -152,11 +162,11 @@ def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> ZoneNam
     if not zones.contains([position], clearance_m, low_m, high_m)[0]:
         return None
     found = zones.zone_at(position, low_m, high_m)
-    return _name(found[1]) if found else _margin(airspace)
+    return met_zone(*found) if found else _margin(airspace)
 
 
-def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> ZoneName | None:
-    """Return the name of the first zone that a stretch meets at the heights of its inspection and of the flight to it."""
+def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> MetZone | None:
+    """Return the first zone that a stretch meets at the heights of its inspection and of the flight to it."""
     line = np.array(course)
     low_m, high_m = column_m(agl_m, airspace)
     met = np.flatnonzero(airspace.zones.meets(line[:-1], line[1:], airspace.access.zone_clearance_m, low_m, high_m))
@@ -165,16 +175,17 @@ def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> Zo
     for leg in met.tolist():
         found = airspace.zones.first_met(course[leg], course[leg + 1], low_m, high_m)
         if found is not None:
-            return _name(found[1])
+            return met_zone(*found)
     return _margin(airspace)
 
 
-def _name(name: str) -> ZoneName:
-    return Reason("obstacle_margin") if name == WALL else name
+def met_zone(key: int, name: str) -> MetZone:
+    """Return a zone as an index describes it."""
+    return MetZone(Reason("obstacle_margin")) if name == WALL else MetZone(name, key)
 
 
-def _margin(airspace: Airspace) -> Reason:
-    return Reason("zone_margin", {"margin_m": airspace.access.zone_clearance_m})
+def _margin(airspace: Airspace) -> MetZone:
+    return MetZone(Reason("zone_margin", {"margin_m": airspace.access.zone_clearance_m}))
 
 
 def column_m(agl_m: float, airspace: Airspace) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from planning.checks.lost_link import lost_link_check
 from planning.checks.separation import SeparatedRoutes, separated
 from planning.checks.zones import keys_of_zones_met
 from planning.context import PlanningContext
+from planning.explain.barriers import with_barriers
 from planning.explain.energy_shortfall import OUT_OF_REACH, least_missing, with_shortfalls
 from planning.explain.other_limits import with_other_limits
 from planning.plan import Plan, PlannedRoute, PlanWarning
@@ -214,7 +215,7 @@ def _plan(context: PlanningContext, best: CheckedPlan, freest: CheckedPlan, call
     return Plan(
         request=request,
         routes=flown.routes,
-        unassigned=with_other_limits(found),
+        unassigned=with_barriers(found, with_other_limits(found)),
         warnings=_warnings(context, request, found.grounded, is_by_length=found.airspace.is_by_length),
         separation=flown.separation,
         untimed_flights=flown.others.untimed,

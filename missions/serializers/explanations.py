@@ -64,7 +64,7 @@ class TargetExplanationSerializer(serializers.Serializer):
             "not_allowed", "beyond_energy", "wind", "most_targets",
         ]
     )  # fmt: skip
-    message = serializers.CharField(allow_blank=True, help_text="of energy and wind, as a plan of this target alone tells it")
+    message = serializers.CharField(allow_blank=True, help_text="as a plan of this target alone tells it; empty where the figures do")
     zones = ZoneNameSerializer(many=True, help_text="that hold it, or that bar the ways to it")
     stretches = serializers.ListField(
         child=serializers.ListField(child=PositionField(), min_length=2, max_length=2),

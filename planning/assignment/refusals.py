@@ -31,11 +31,11 @@ def refused_target(target: ResolvedTarget, airspace: Airspace) -> UnassignedTarg
     if target.is_stretch:
         zone = zone_along(target.course, agl_m, airspace)
         if zone is not None:
-            return UnassignedTarget(target.target, "inside_zone", (Reason("runs_through_zone", {"zone": zone}),))
+            return UnassignedTarget(target.target, "inside_zone", (Reason("runs_through_zone", zone.params),))
     else:
         zone = zone_at(target.course[0], airspace, agl_m)
         if zone is not None:
-            return UnassignedTarget(target.target, "inside_zone", (Reason("stands_inside_zone", {"zone": zone}),))
+            return UnassignedTarget(target.target, "inside_zone", (Reason("stands_inside_zone", zone.params),))
     return None
 
 
@@ -68,5 +68,5 @@ def groundings(uavs: Sequence[UavRequest], airspace: Airspace) -> dict[int, Grou
         elif state is not None:
             found[number] = Grounding("uav_out_of_service", Reason("uav_in_maintenance", {"uav": uav.name}))
         elif zone is not None:
-            found[number] = Grounding("uav_inside_zone", Reason("uav_inside_zone", {"uav": uav.name, "zone": zone}))
+            found[number] = Grounding("uav_inside_zone", Reason("uav_inside_zone", {"uav": uav.name, **zone.params}))
     return found

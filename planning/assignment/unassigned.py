@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from operation.reasons import MAX_NAMED, Reason
-from planning.airspace import ZoneName
+from planning.airspace import MetZone
 from planning.assignment.assignment import Assignment
 from planning.assignment.options import has_sensor, may_do
 from planning.assignment.refusals import Grounding
@@ -31,7 +31,7 @@ def explained_unassigned(
     uavs: Sequence[int],
     asked: Assignment,
     grounded: Mapping[int, Grounding],
-    no_landing: Mapping[int, ZoneName],
+    no_landing: Mapping[int, MetZone],
     kept_from: Mapping[int, Collection[int]],
 ) -> list[UnassignedTarget]:
     """Return the solver's reasons in full. no_landing: zones in which UAVs would land at targets, by their numbers among those routed;
@@ -42,7 +42,7 @@ def explained_unassigned(
     for item in unassigned:
         target, visits = routing.targets[item.target], visits_of[item.target]
         if item.target in no_landing and item.reason is UnassignedReason.NO_PATH:
-            landing = Reason("lands_through_zone", {"zone": no_landing[item.target]})
+            landing = Reason("lands_through_zone", no_landing[item.target].params)
             found.append(UnassignedTarget(target.target, "inside_zone", (landing,)))
             continue
         not_charged = [uav for uav, kept in kept_from.items() if target.target in kept]

@@ -17,6 +17,7 @@ from missions.models import UavState
 from missions.selectors.fleet import uavs_of_organisation
 from missions.selectors.planning_context import planning_context, read_targets, stored_bases
 from missions.services.planning.planner import make_plan
+from operation.reasons import Reason
 from planning.airspace import Airspace, airspace_on, zone_at, zone_choice
 from planning.assignment.options import may_do
 from planning.assignment.refusals import groundings, target_height_m
@@ -24,12 +25,13 @@ from planning.assignment.routing_input import needs_flight_costs, visits_of_targ
 from planning.connection_points import TargetPaths, Terminal, paths_between
 from planning.context import ResolvedTarget
 from planning.explain import route
+from planning.explain.barriers import barriers_of
 from planning.problem import Objective, Problem, UavStart
 from planning.request import EndAction, PlanRequest, TargetRequest, UavRequest
 from planning.solver.reach import needed_range_m
 from planning.trajectory.heights import is_above_limit
 from workspace.models import Organisation
-from workspace.reason_texts import why_text
+from workspace.reason_texts import reason_text, why_text
 
 MAX_SPARE = 8  # UAVs of the fleet, the nearest first, that are tried as alternatives
 MIN_STRETCH_M = 50.0  # shorter parts of a line outside its zones are ignored
@@ -106,11 +108,25 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
         }
         for number, uav in enumerate(asked)
     ]
-    reason, barring = _reason(request.targets[target], place, [uav for uav in uavs if uav["is_in_mission"]], ways, airspace)
+    reason = _reason(request.targets[target], place, [uav for uav in uavs if uav["is_in_mission"]], ways, airspace)
     alone = _refused_alone(request, target) if reason == "not_with_the_others" and needs_flight_costs(request) else None
     if alone is not None:
         return reported | {"reason": alone["reason"], "message": why_text(alone["why"], alone["message"]), "uavs": uavs}
-    return reported | {"reason": reason, "zones": barring, "uavs": uavs}
+    if reason == "no_path":
+        starts = [uav.position for number, uav in enumerate(request.uavs) if not grounded[number]]
+        return reported | _barred(place, starts, airspace) | {"uavs": uavs}
+    return reported | {"reason": reason, "uavs": uavs}
+
+
+def _barred(place: ResolvedTarget, starts: Sequence[LonLat], airspace: Airspace) -> dict[str, Any]:
+    """Return what bars every path, as in a plan; near the place also the zones around it."""
+    barrier = barriers_of([place], starts, airspace).get(place.target)
+    why = (Reason("no_path"), *([] if barrier is None else [barrier.why]))
+    zone = None if barrier is None else barrier.zone
+    zones = [] if barrier is not None and zone is None else _zones_around(place, airspace)
+    if zone is not None and zone.id is not None:
+        zones = [{"id": zone.id, "name": zone.name}]
+    return {"reason": "no_path", "message": " ".join(reason_text(reason) for reason in why), "zones": zones}
 
 
 def _refused_alone(request: PlanRequest, target: int) -> dict[str, Any] | None:
@@ -119,19 +135,17 @@ def _refused_alone(request: PlanRequest, target: int) -> dict[str, Any] | None:
     return refused[0] if refused else None
 
 
-def _reason(
-    wished: TargetRequest, place: ResolvedTarget, uavs: list[dict[str, Any]], ways: TargetPaths, airspace: Airspace
-) -> tuple[str, list[dict[str, Any]]]:
+def _reason(wished: TargetRequest, place: ResolvedTarget, uavs: list[dict[str, Any]], ways: TargetPaths, airspace: Airspace) -> str:
     if any(uav["is_enough"] for uav in uavs):
-        return "not_with_the_others", []
+        return "not_with_the_others"
     uavs = [uav for uav in uavs if uav["is_allowed"]]
     if all(uav["is_grounded"] for uav in uavs) and (wished.uav or wished.sensor):
-        return "not_allowed", []
+        return "not_allowed"
     if any(uav["needed_m"] is not None for uav in uavs):
-        return "beyond_range", []
+        return "beyond_range"
     if not any(ways.entry_legs) and _network_m(place, airspace) > airspace.access.access_leg_m:
-        return "too_far_from_network", []
-    return "no_path", _zones_around(place, airspace)
+        return "too_far_from_network"
+    return "no_path"
 
 
 def _network_m(place: ResolvedTarget, airspace: Airspace) -> float:

@@ -198,6 +198,32 @@ def test_an_island_out_of_reach_has_no_path() -> None:
     far = island()
     plan = make_plan(request=request(here.towers[0], far[0]))
     assert reasons(plan) == {1: "no_path"}
+    (left_out,) = plan["unassigned"]
+    assert [reason["code"] for reason in left_out["why"]] == ["no_path", "not_connected"]
+    expected = "No permitted route from any base. It is not connected to the network of any UAV: the nearest stands 18.7 km away."
+    assert left_out["message"] == expected
+
+
+def test_targets_on_another_continent_are_not_connected_whatever_zones_there_are() -> None:
+    here = world()
+    zone_around((10.05, 56.05))
+    plan = make_plan(request=request(here.towers[0], *island(lon=-75.0)))
+    assert {tuple(reason["code"] for reason in item["why"]) for item in plan["unassigned"]} == {("no_path", "not_connected")}
+    assert all(item["why"][1]["params"]["away_km"] > 4_000 for item in plan["unassigned"])
+
+
+def test_the_zone_that_bars_every_path_is_named() -> None:
+    """A line of 45 km through a zone of 17 by 31 km."""
+    here = world()
+    towers = [here.towers[-1], *(ground.tower((10.05 + 0.05 * place, LINE_LAT)) for place in range(14))]
+    power_line(towers)
+    barrier = zone_around((10.35, 56.0), half_deg=0.14, name="Firing range")
+    plan = make_plan(request=request(here.towers[0], towers[-1]))
+    assert reasons(plan) == {1: "no_path"}
+    (left_out,) = plan["unassigned"]
+    assert [reason["code"] for reason in left_out["why"]] == ["no_path", "barred_by_zone"]
+    assert left_out["why"][1]["params"] == {"zone": "Firing range", "zone_id": barrier.pk}
+    assert left_out["message"] == "No permitted route from any base. Firing range is in the way."
 
 
 def test_an_island_within_an_access_leg_of_a_uav_is_reached() -> None:
@@ -284,13 +310,13 @@ def test_a_vanished_asset_can_still_be_visited() -> None:
 
 def test_a_uav_inside_a_zone_stays_on_the_ground_and_the_plan_says_so() -> None:
     here = world()
-    zone_around((10.001, 55.990))
+    zone = zone_around((10.001, 55.990))
     plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.990), name="Kite"), uav())))
     assert [route["targets"] for route in plan["routes"]] == [[], [0]]
     (warning,) = plan["warnings"]
     assert (warning["code"], warning["uav"]) == ("uav_inside_zone", 0)
     assert warning["message"] == "Kite stands inside Airport and cannot take off."
-    assert warning["why"] == [{"code": "uav_inside_zone", "params": {"uav": "Kite", "zone": "Airport"}}]
+    assert warning["why"] == [{"code": "uav_inside_zone", "params": {"uav": "Kite", "zone": "Airport", "zone_id": zone.pk}}]
 
 
 @pytest.mark.parametrize(

@@ -105,12 +105,22 @@ def test_a_target_that_is_only_left_out_for_the_others_says_so(here: World, clie
 
 
 def test_a_part_of_the_network_behind_a_zone_names_it(here: World, client: Client) -> None:
+    towers = [here.towers[-1], *(ground.tower((10.05 + 0.05 * place, 56.0)) for place in range(14))]
+    power_line(towers)
+    zone_around((10.35, 56.0), half_deg=0.14, name="Firing range")
+    stated = why_target(client, plan_body(towers[-1]))
+    assert (stated["reason"], [zone["name"] for zone in stated["zones"]]) == ("no_path", ["Firing range"])
+    assert stated["message"] == "No permitted route from any base. Firing range is in the way."
+
+
+def test_an_island_is_not_connected_and_no_zone_is_blamed(here: World, client: Client) -> None:
     far, _ = island()
     zone_around((10.15, 56.0), half_deg=0.14, name="Firing range")
     body = plan_body(far)
     assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "no_path"
     stated = why_target(client, body)
-    assert (stated["reason"], [zone["name"] for zone in stated["zones"]]) == ("no_path", ["Firing range"])
+    assert (stated["reason"], stated["zones"]) == ("no_path", [])
+    assert "It is not connected to the network of any UAV" in stated["message"]
 
 
 def test_the_parts_of_a_route_add_up_to_it(here: World, client: Client) -> None:
