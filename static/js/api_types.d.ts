@@ -6400,7 +6400,7 @@ export interface components {
         TargetExplanation: {
             target: number;
             reason: components["schemas"]["TargetExplanationReasonEnum"];
-            /** @description of energy and wind, as a plan of this target alone tells it */
+            /** @description as a plan of this target alone tells it; empty where the figures do */
             message: string;
             /** @description that hold it, or that bar the ways to it */
             zones: components["schemas"]["ZoneName"][];

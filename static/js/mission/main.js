@@ -111,10 +111,18 @@ const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
 const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel?.askForUav(position) });
 /** @param {AssetFeature} feature */
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
+/** @param {number[][]} positions */
+const showPlaces = (positions) => {
+  layout.showMap();
+  map.showPlaces(positions);
+};
 mountStages(store);
 mountHeader(store, actions, page.canPlan, {
   canCopy: page.canFly,
+  canCurate: page.canCurate,
   showPlace: (position) => map.goTo({ position, zoom: 14 }),
+  showPlaces,
+  addUavAt: (position) => uavPanel?.askForUav(position),
 });
 if (page.isFrozen) {
   mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) });
@@ -138,13 +146,7 @@ if (page.canPlan) {
   mountFlightOptions(store, actions);
   mountEndings(store, actions);
 } else mountOptionsRead(store);
-mountLostLink(store, actions, {
-  canPlan: page.canPlan,
-  showPlaces(positions) {
-    layout.showMap();
-    map.showPlaces(positions);
-  },
-});
+mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces });
 mountFoot(store, actions);
 const grounds = createGrounds();
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });

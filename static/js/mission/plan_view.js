@@ -99,12 +99,13 @@ export function inPlanOrder(targets, places) {
     .map(({ target }) => target);
 }
 
-/** [{ target, sentence, reason }] for the targets that no route visits. @param {ShownPlan | null} plan */
+/** [{ target, sentence, reason, why }] for the targets that no route visits. @param {ShownPlan | null} plan */
 export function unreachedOf(plan) {
   if (!plan) return [];
   return plan.result.unassigned.map((entry) => ({
     target: plan.targets[entry.target],
     reason: entry.reason,
+    why: entry.why ?? [], // of old plans
     sentence: entry.message || t("No route visits it."),
   }));
 }

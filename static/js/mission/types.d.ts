@@ -38,6 +38,7 @@ export interface MissionPageData {
   userName: string;
   canPlan: boolean;
   canFly: boolean;
+  canCurate: boolean;
   isFrozen: boolean;
   /** "plan", "rehearse" or "fly" */
   stage: string;

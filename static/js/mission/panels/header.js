@@ -14,22 +14,23 @@ import { standingUavs } from "../fleet.js";
 import { departureText } from "../flight_options.js";
 import { factsOf } from "../head_facts.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
+import { unreachedCards } from "../unreached/cards.js";
 import { showHistory } from "./history.js";
+import { showLegalTimes } from "./options/legal_times.js";
 import { uavNotice } from "./uavs/changes.js";
 
 /** @import { Mission } from "../../api_types.d.ts" */
 /** @import { Child } from "../../dom.js" */
 /** @import { MenuItem } from "../../page/chrome.js" */
-/** @import { Conflict, MissionActions, MissionPageState, MissionStore, WayOut, Why } from "../types.d.ts" */
+/** @import { CardContext } from "../unreached/cards.js" */
+/** @import { Conflict, MissionActions, MissionPageState, MissionStore, WayOut } from "../types.d.ts" */
 
 /** @typedef {(position: number[]) => void} ShowPlace on the map */
 /**
- * @typedef {object} NoticeContext
- * @property {MissionActions} actions
- * @property {boolean} canPlan
+ * @typedef {object} OfNotices
  * @property {ShowPlace} showPlace
- * @property {(why: Why) => void} askWhy
  */
+/** @typedef {CardContext & OfNotices} NoticeContext */
 
 const STATE_WORDS = {
   draft: t("Draft"),
@@ -43,7 +44,6 @@ const STATE_WORDS = {
 };
 const phone = matchMedia("(max-width: 720px)");
 const MAX_CAUSES = 3;
-const MAX_UNREACHED = 3;
 
 /** The mission's address with the part of the map that is in sight. @param {Mission} mission */
 async function copyAddress(mission) {
@@ -75,9 +75,10 @@ async function changeAlertLimits({ id, name }) {
  * @param {MissionStore} store
  * @param {MissionActions} actions
  * @param {boolean} canPlan
- * @param {{ canCopy: boolean, showPlace: ShowPlace }} how `canCopy`: users who plan missions may copy a read-only one
+ * @param {{ canCopy: boolean, canCurate: boolean, showPlace: ShowPlace, addUavAt: (position: number[]) => void,
+ *   showPlaces: (positions: number[][]) => void }} how `canCopy`: users who plan missions may copy a read-only one
  */
-export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
+export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showPlace, showPlaces, addUavAt }) {
   const name = byId("mission-name", HTMLInputElement);
   name.addEventListener("input", () => actions.rename(name.value));
   name.addEventListener("blur", () => {
@@ -97,7 +98,20 @@ export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
     drawHead(state, canPlan);
   });
 
-  const context = { actions, canPlan, showPlace, askWhy: (/** @type {Why} */ why) => store.update({ why }) };
+  /** @type {NoticeContext} */
+  const context = {
+    actions,
+    canPlan,
+    canCurate,
+    showPlace,
+    askWhy: (why) => store.update({ why }),
+    showTogether(positions, zones) {
+      store.update({ litZones: zones });
+      showPlaces(positions);
+    },
+    addUavAt,
+    lookForDeparture: () => showLegalTimes(store, actions),
+  };
   store.listen(["problem", "conflict", "plan", "planIsStored", "selection", "mission", "isAway"], (state) =>
     setChildren(byId("notices"), noticesOf(state, context)),
   );
@@ -222,32 +236,10 @@ const conflictNotice = ({ whose, at }, actions) =>
  * @param {MissionPageState} state
  * @param {NoticeContext} context
  */
-function planNotices({ plan }, { actions, canPlan, askWhy }) {
-  const unreached = unreachedOf(plan);
-  const more = unreached.length - MAX_UNREACHED;
-  /** @param {string[]} keys @param {string} label @returns {WayOut[]} */
-  const remove = (keys, label) => (canPlan ? [{ label, act: () => actions.removeTargets(keys) }] : []);
+function planNotices({ plan }, context) {
   return folded([
     ...(plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", message)),
-    ...unreached
-      .slice(0, MAX_UNREACHED)
-      .map(({ target, sentence }) =>
-        notice("warning", "triangle-alert", t("{target} is not reached.", { target: target.label }), sentence, [
-          { label: t("Why?"), act: () => askWhy({ target: target.key }) },
-          ...remove([target.key], t("Remove it")),
-        ]),
-      ),
-    more > 0 &&
-      notice(
-        "warning",
-        "triangle-alert",
-        tn(more, "{count} more target is not reached.", "{count} more targets are not reached."),
-        t("The list below says which."),
-        remove(
-          unreached.map(({ target }) => target.key),
-          t("Remove all that are not reached"),
-        ),
-      ),
+    ...unreachedCards(plan, context),
   ]);
 }
 

@@ -1,6 +1,7 @@
 /** Why no route visits a target: the reason, the figures behind it, and one change or more that would help. */
 
 import { h } from "../../../dom.js";
+import { zoneDetails } from "../../../map/zone_details.js";
 import { t, tn } from "../../../text.js";
 import { heightText, lengthText } from "../../../units.js";
 import { showLegalTimes } from "../options/legal_times.js";
@@ -94,10 +95,7 @@ export function reasonWords(explanation, full = []) {
       }),
     too_far_from_network: () =>
       t("The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.", lengths),
-    no_path: () =>
-      zones
-        ? t("Every way to it leads through {zones}.", { zones })
-        : t("No way leads there that keeps clear of every zone."),
+    no_path: () => explanation.message,
     beyond_range: () => t("It is out of range of every UAV of this mission."),
     beyond_energy: () => explanation.message || t("No battery lasts for the way there and back."),
     wind: () => t("The wind is too strong on every way to it, or back."),
@@ -167,9 +165,11 @@ function changes(explanation, { target, full, store, actions }) {
   if (!["beyond_energy", "wind"].includes(explanation.reason)) list.push(...changesOfRange(explanation.uavs, actions));
   if (explanation.reason === "not_with_the_others")
     list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
-  if (["inside_zone", "no_path"].includes(explanation.reason) && explanation.zones.length)
+  if (["inside_zone", "no_path"].includes(explanation.reason))
     list.push(
-      act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)),
+      ...explanation.zones.flatMap(({ id }) =>
+        id === null ? [] : [changeOfTime(id, () => showLegalTimes(store, actions))],
+      ),
     );
   const remove = () => {
     store.update({ why: null });
@@ -177,6 +177,19 @@ function changes(explanation, { target, full, store, actions }) {
   };
   list.push(act(t("The plan goes without it."), t("Remove it"), remove));
   return h("div", {}, h("h3", {}, t("What would help")), h("ul", { class: "why-changes" }, list));
+}
+
+/** Another departure; offered only where the zone is not in force at all times. @param {number} id of the zone @param {() => unknown} run */
+function changeOfTime(id, run) {
+  const item = act(t("The zone is not always in force."), t("Look for a better departure"), run);
+  item.hidden = true;
+  zoneDetails(id).then(
+    ({ schedule }) => {
+      item.hidden = !schedule?.length;
+    },
+    () => {},
+  );
+  return item;
 }
 
 /** What helps a target that is out of range. @param {Reach[]} uavs @param {MissionActions} actions */
