@@ -5,7 +5,7 @@ from operation.reasons import gettext_noop, ngettext_noop, register_sentences
 SENTENCES = register_sentences(
     {
         # what is wrong with a request
-        "no_battery_to_save": gettext_noop("Without a battery %(uav)s has no energy to save."),
+        "no_battery_to_save": gettext_noop("%(uav)s states no battery capacity: its energy cannot be calculated."),
         "sorties_without_return": gettext_noop("%(uav)s can fly again only where it returns to its start."),
         "unknown_uav_name": gettext_noop("There is no UAV named %(name)s in this plan."),
         "ambiguous_uav_name": gettext_noop("%(count)s UAVs of this plan are named %(name)s."),

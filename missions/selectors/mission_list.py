@@ -133,9 +133,8 @@ else:
 
 def mission_rows(missions: QuerySet[Mission]) -> QuerySet[ListedMission]:
     """Return the missions with counts, times, routes and a sort key for each column."""
-    longest = (
-        Route.objects.filter(mission=OuterRef("pk")).order_by().values("mission").annotate(longest=Max("duration_s")).values("longest")
-    )
+    ends_s = Max(F("departs_s") + F("duration_s"))
+    last_end = Route.objects.filter(mission=OuterRef("pk")).order_by().values("mission").annotate(ends_s=ends_s).values("ends_s")
     return (
         missions.select_related("author")
         .annotate(
@@ -143,13 +142,13 @@ def mission_rows(missions: QuerySet[Mission]) -> QuerySet[ListedMission]:
             unassigned_count=_count_of(InspectionTarget.objects.exclude(unassigned_reason="")),
             uav_count=_count_of(MissionUav.objects.all()),
             is_simulated=Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav__is_simulated=True)),
-            duration_s=Subquery(longest, output_field=FloatField()),
+            duration_s=Subquery(last_end, output_field=FloatField()),
             # Aliases as real fields: a page's cursor reads these values, not those of the columns they are made from.
             sort_name=Lower("name", output_field=CharField()),
             sort_author=Lower(Coalesce(F("author__username"), Value("")), output_field=CharField()),
             sort_state=Lower("state", output_field=CharField()),
             sort_length_m=Coalesce(F("total_length_m"), Value(NOT_PLANNED), output_field=FloatField()),
-            sort_duration_s=Coalesce(Subquery(longest, output_field=FloatField()), Value(NOT_PLANNED), output_field=FloatField()),
+            sort_duration_s=Coalesce(Subquery(last_end, output_field=FloatField()), Value(NOT_PLANNED), output_field=FloatField()),
         )
         .prefetch_related("routes")
     )

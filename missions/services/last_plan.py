@@ -27,7 +27,7 @@ def summary_of_plan(*, mission: Mission) -> dict[str, Any] | None:
         "locks": len(mission.locks),
         "quality": mission.plan_quality,
         "total_length_m": mission.total_length_m,
-        "duration_s": max((route["duration_s"] for route in summaries), default=0.0),
+        "duration_s": max((route.departs_s + route.duration_s for route in routes), default=0.0),
         "routes": summaries,
         "unassigned": [_target(target) for target in targets.values() if target.unassigned_reason],
         "by_hand": hand_legs_json(mission),

@@ -2286,7 +2286,7 @@ export interface components {
             total_length_m: number;
             /**
              * Format: double
-             * @description of the longest route in time
+             * @description from the departure until the last UAV has ended its route
              */
             duration_s: number;
             /** @description how many runs were locked */
@@ -3122,7 +3122,7 @@ export interface components {
             longest_route_m: number | null;
             /**
              * Format: double
-             * @description of the longest route in time
+             * @description from the departure until the last UAV has ended its route
              */
             duration_s: number | null;
             is_stale: boolean;

@@ -33,7 +33,7 @@ def test_a_plan_that_is_replaced_is_remembered_in_short(here: World, client: Cli
     now = patch(client, f"missions/{mission['id']}", wanted).json()
     last = now["last_plan"]
     assert last["total_length_m"] == before["total_length_m"] > now["plan"]["total_length_m"]
-    assert last["duration_s"] == before["routes"][0]["duration_s"]
+    assert last["duration_s"] == before["routes"][0]["departs_s"] + before["routes"][0]["duration_s"]
     (route,) = last["routes"]
     assert (route["uav"], route["length_m"]) == (before["routes"][0]["uav"], before["routes"][0]["length_m"])
     assert [stop["asset"] for stop in route["stops"]] == [here.towers[1].pk, here.towers[4].pk]

@@ -2,6 +2,7 @@
 
 import { distance_m } from "../domain/geodesy.js";
 import { profileOf } from "../domain/route_profile.js";
+import { longestDuration_s } from "./plan_view.js";
 import { keyOf, wishesOf } from "./selection.js";
 
 /** @import { LastTarget, Plan } from "../api_types.d.ts" */
@@ -19,7 +20,7 @@ export function summaryOfPlan({ result, targets }) {
     objective: result.objective,
     return_to_start: result.return_to_start,
     total_length_m: result.total_length_m,
-    duration_s: Math.max(0, ...result.routes.map((route) => route.duration_s)),
+    duration_s: longestDuration_s(result),
     routes: result.routes.map((route) => {
       const profile = profileOf(route.waypoints, route.length_m);
       return {
@@ -92,7 +93,7 @@ function meritOf({ result, targets }) {
     (priority) =>
       result.unassigned.filter(({ target }) => wishesOf(targets[target] ?? {}).priority === priority).length,
   );
-  const [total, longest] = [result.total_length_m, Math.max(0, ...result.routes.map((route) => route.duration_s))];
+  const [total, longest] = [result.total_length_m, longestDuration_s(result)];
   const { objective, total_duration_s, total_energy_wh } = result;
   const [time, energy] = [total_duration_s ?? longest, total_energy_wh ?? total];
   const first = { total, time, energy, makespan: longest }[objective];

@@ -41,11 +41,14 @@ export const OBJECTIVES = [
 export const otherObjective = (objective) => (objective === "makespan" ? "total" : "makespan");
 
 /**
- * A plan that counts no energy is of UAVs without a battery: least energy means nothing for them.
+ * A plan that counts no energy of the routes flown is of UAVs whose battery's capacity is not stated: least energy means nothing for them.
  *
  * @param {ShownPlan | null} plan
  */
-export const isWithoutBattery = (plan) => plan !== null && (plan.result.total_energy_wh ?? null) === null;
+export const isWithoutCapacity = (plan) =>
+  plan !== null &&
+  plan.result.routes.some(({ geometry }) => geometry) &&
+  (plan.result.total_energy_wh ?? null) === null;
 
 /**
  * Routes with their place in the mission: [{ sequence, letter, name, route, targets }].

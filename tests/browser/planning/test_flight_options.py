@@ -121,7 +121,7 @@ def test_the_ways_of_planning_stand_side_by_side_and_one_click_takes_one(visitor
     rows = panel.get_by_role("row")
     expect(rows.filter(has_text="Shortest distance")).to_contain_text(re.compile(r"\d\skm"))
     expect(rows.filter(has_text="Least flying time")).to_contain_text(re.compile(r"\d\skm"))
-    expect(rows.filter(has_text="Least energy")).to_contain_text("No UAV has a battery.")
+    expect(rows.filter(has_text="Least energy")).to_contain_text("No UAV states its battery’s capacity")
     expect(panel.locator("[aria-current]")).to_contain_text("Finish soonest")
     in_both_themes(page, picture, "plan-ways")
     assert faults(page) == []

@@ -9,7 +9,7 @@ const result = (more) => ({
   total_duration_s: 6000,
   total_energy_wh: 200,
   unassigned: [],
-  routes: [{ duration_s: 3000, departs_s: 0, waypoints: [{ kind: "start" }] }],
+  routes: [{ duration_s: 3000, departs_s: 0, geometry: {}, waypoints: [{ kind: "start" }] }],
   ...more,
 });
 const basis = (objective) => basisOf({ ...EMPTY, objective });
@@ -34,7 +34,9 @@ test("each way has its result, its fault or neither, and the present one is mark
   assert.equal(ways[2].isBeingMade, true);
   assert.equal(ways[3].fault, "It is refused.");
   const bare = { ...state, refusedBeside: {}, plan: { ...state.plan, result: result({ total_energy_wh: null }) } };
-  assert.equal(waysOf(bare)[3].fault, "No UAV has a battery.");
+  assert.equal(waysOf(bare)[3].fault, "No UAV states its battery’s capacity: energy is not calculated.");
+  bare.plan.result.routes = []; // nothing flies: nothing is said of batteries
+  assert.equal(waysOf(bare)[3].fault, "");
 });
 
 test("the best of a column is marked, and nothing where all are alike", () => {

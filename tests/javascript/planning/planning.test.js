@@ -180,6 +180,11 @@ test("another start and another end of a flight are told, though it is as long",
   assert.ok(!isSamePlan({ routes: [before] }, { routes: [{ ...before, end_action: "land" }] }));
 });
 
+test("a plan in short ends when the last UAV ends, its later take-off counted", () => {
+  const late = { ...route, uav: "Kite", departs_s: 120 };
+  assert.equal(summaryOfPlan(planOf(route, late)).duration_s, route.duration_s + 120);
+});
+
 test("a target that changes hands is named with both UAVs, and one that came or went as well", () => {
   const before = summaryOfPlan(planOf(route, idle));
   const now = summaryOfPlan(planOf({ ...idle, uav: "Heron", uav_id: 1 }, other));

@@ -131,6 +131,13 @@ def test_each_column_sorts_both_ways_and_pages_without_gap_or_repeat(here: World
         assert set(up[:2]) == {"Birch", "Dogwood"}
 
 
+def test_the_list_counts_a_later_take_off_in_a_missions_time(here: World, client: Client) -> None:
+    created(client, here, "Late", here.towers[1])
+    Route.objects.update(departs_s=120.0)
+    (mission,) = client.get("/api/v1/missions").json()["results"]
+    assert mission["duration_s"] == pytest.approx(120.0 + Route.objects.get().duration_s)
+
+
 def test_the_list_says_how_many_there_are_in_all_and_in_each_state(here: World, client: Client) -> None:
     created(client, here, "A")
     created(client, here, "B", plan=False)

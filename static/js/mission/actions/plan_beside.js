@@ -3,7 +3,7 @@
 import { follow, get, isAbort, post } from "../../api.js";
 import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { isWithoutBattery, OBJECTIVES, otherObjective } from "../plan_view.js";
+import { isWithoutCapacity, OBJECTIVES, otherObjective } from "../plan_view.js";
 import * as picks from "../selection.js";
 import { withResult } from "./plan_results.js";
 
@@ -140,7 +140,7 @@ export function createPlanBeside(store) {
           const other = { ...asked, objective: value };
           const basis = picks.basisOf(other);
           if (own.signal.aborted) return;
-          if (store.state.figures[basis] || (value === "energy" && isWithoutBattery(store.state.plan))) continue;
+          if (store.state.figures[basis] || (value === "energy" && isWithoutCapacity(store.state.plan))) continue;
           try {
             await search.make(other, own);
           } catch (error) {

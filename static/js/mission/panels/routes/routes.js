@@ -34,6 +34,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     drawHead(state, plan);
     const showsBattery = plan.result.routes.some((route) => batteryOf(route));
     dock.classList.toggle("with-battery", showsBattery);
+    dock.classList.toggle("outdated", !isPlanCurrent(state));
     width_px = stripRoom(dock);
     dock.classList.toggle("tight", isTight(dock));
     const last = lastPlanOf(state);
@@ -65,6 +66,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
           result: plan.result,
           canPlan,
           isChosen: state.chosenRoute === sequence,
+          isChanged: strips.isChanged(sequence),
           showsBattery,
           before: old,
           strips: strips.draw(route, old, state, drawn),

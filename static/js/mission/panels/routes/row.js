@@ -16,6 +16,7 @@ import { batteryOf, delayText, landing_s, staysText } from "../../route_times.js
  * @property {PlanResult} result of the plan
  * @property {boolean} canPlan
  * @property {boolean} isChosen
+ * @property {boolean} isChanged targets were moved to it or from it since
  * @property {boolean} showsBattery
  * @property {ShortRoute | null} before the route of the same UAV in the plan that it is compared with
  * @property {Child} strips
@@ -69,8 +70,8 @@ function secondWords(route, result) {
 
 /** @param {ShownRoute} route @param {RowContext} context */
 export function routeRow(route, context) {
-  const { result, isChosen, strips, acts } = context;
-  const second = secondWords(route, result);
+  const { result, isChosen, isChanged, strips, acts } = context;
+  const second = isChanged ? t("Change not planned yet.") : secondWords(route, result);
   return h(
     "li",
     {

@@ -136,6 +136,9 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
       const isShown = Boolean(route.geometry) || wishes[route.sequence].length > 0;
       return [isShown && stripOf(route, state, drawn), before && before.length_m > 0 && oldStrip(before, drawn)];
     },
+    /** Whether targets would be moved by what is not planned yet. @param {number} sequence of the route */
+    isChanged: (sequence) =>
+      (wishes[sequence] ?? []).join() !== (ordersOf(store.state.plan)[sequence]?.targets ?? []).join(),
     /** @param {string | null} target */
     light(target) {
       for (const strip of strips.values()) strip.light(target);

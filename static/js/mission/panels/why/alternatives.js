@@ -3,7 +3,7 @@
 import { h, icon } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { durationText, energyText, lengthText, numberText } from "../../../units.js";
-import { isWithoutBattery, longestDuration_s, OBJECTIVES } from "../../plan_view.js";
+import { isWithoutCapacity, longestDuration_s, OBJECTIVES } from "../../plan_view.js";
 import { standing_s } from "../../route_times.js";
 import { basisOf } from "../../selection.js";
 import { openChanges } from "../../uav_changes.js";
@@ -54,7 +54,7 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
     const basis = basisOf({ ...selection, objective: value });
     const result = figures[basis] ?? null;
     const fault =
-      refusedBeside[basis] ?? (value === "energy" && isWithoutBattery(plan) ? t("No UAV has a battery.") : "");
+      refusedBeside[basis] ?? (value === "energy" && isWithoutCapacity(plan) ? t("No UAV states its battery’s capacity: energy is not calculated.") : "");
     return {
       objective: value,
       words,

@@ -126,8 +126,10 @@ function instead(explanation, plan) {
 function limit(plan, route) {
   const flown = plan.result.routes.filter(({ geometry }) => geometry);
   if (flown.length < 2) return null;
-  const last = flown.reduce((a, b) => (b.duration_s > a.duration_s ? b : a));
-  const time = durationText(last.duration_s);
+  /** @param {typeof flown[number]} one */
+  const end_s = ({ departs_s, duration_s }) => (departs_s ?? 0) + duration_s;
+  const last = flown.reduce((a, b) => (end_s(b) > end_s(a) ? b : a));
+  const time = durationText(end_s(last));
   const words =
     last.uav === route.uav
       ? t("{name} is the last to be done, after {time}.", { name: last.uav, time })
