@@ -3,6 +3,7 @@ import { test } from "node:test";
 
 globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
+const { inUnit } = await import("../../../static/js/mission/panels/why/in_unit.js");
 const { insteadWords } = await import("../../../static/js/mission/panels/why/instead_words.js");
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
@@ -34,6 +35,31 @@ test("what giving a target away costs is told in the unit of the objective", () 
     "Giving H135 to Osprey would fly 900 m more in total.",
   );
   assert.match(insteadWords(summary({ other_length_m: 15000 }), plan("makespan")), /at about the same time/);
+});
+
+test("a plan for the least flying time or energy is told in minutes or watt-hours", () => {
+  assert.equal(
+    plain(insteadWords(summary({ total_change_m: 1800 }), plan("time"))),
+    "Giving H135 to Osprey would take about 3 min more in total.",
+  );
+  const powered = plan("energy");
+  for (const one of powered.result.routes) one.energy_wh = one.length_m / 100; // 10 Wh per km
+  assert.equal(
+    plain(insteadWords(summary({ total_change_m: -1800 }), powered)),
+    "Giving H135 to Osprey would take about 18 Wh less in total.",
+  );
+  const parts = ["total", "makespan", "time", "energy"].map((objective) =>
+    inUnit(powered.result.routes[0], 600, objective),
+  );
+  assert.deepEqual(
+    parts.map(({ text, beside }) => [plain(text), plain(beside)]),
+    [
+      ["600 m", ""],
+      ["1 min", "600 m"],
+      ["1 min", "600 m"],
+      ["6 Wh", "600 m"],
+    ],
+  );
 });
 
 test("a UAV whose range does not reach is named with it, and without another UAV there is nothing to tell", () => {

@@ -54,7 +54,10 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
     const basis = basisOf({ ...selection, objective: value });
     const result = figures[basis] ?? null;
     const fault =
-      refusedBeside[basis] ?? (value === "energy" && isWithoutCapacity(plan) ? t("No UAV states its battery’s capacity: energy is not calculated.") : "");
+      refusedBeside[basis] ??
+      (value === "energy" && isWithoutCapacity(plan)
+        ? t("No UAV states its battery’s capacity: energy is not calculated.")
+        : "");
     return {
       objective: value,
       words,

@@ -1,19 +1,14 @@
 /** The cost of giving a target to another UAV, in the unit of the plan's objective. Values in, values out. */
 
 import { t } from "../../../text.js";
-import { durationText, lengthText } from "../../../units.js";
+import { durationText, energyText, lengthText } from "../../../units.js";
 import { longestDuration_s } from "../../plan_view.js";
+import { energyFor_wh, timeFor_s } from "./in_unit.js";
 
 /** @import { RouteExplanation } from "../../../api_types.d.ts" */
 /** @import { ShownPlan } from "../../types.d.ts" */
 
 const MIN_S = 30; // less is no other time
-
-/**
- * Seconds for `more_m` additional metres on a route, at its own mean speed.
- * @param {{ length_m: number, duration_s: number }} route @param {number} more_m
- */
-const timeFor_s = ({ length_m, duration_s }, more_m) => (length_m > 0 ? (more_m * duration_s) / length_m : 0);
 
 /**
  * Delay of the last UAV's end: the target's own hover time moves with it and counts for neither.
@@ -34,6 +29,39 @@ function finishChange_s({ uav, alternative }, result) {
   return longestDuration_s({ ...result, routes }) - longestDuration_s(result);
 }
 
+/**
+ * What both routes together take more, by the means of each: seconds or watt-hours; null where these are not counted.
+ *
+ * @param {RouteExplanation} explanation
+ * @param {ShownPlan["result"]} result
+ * @param {typeof energyFor_wh} amountFor
+ */
+function totalChange({ uav, alternative }, result, amountFor) {
+  if (!alternative) return null;
+  const [own, other] = [result.routes[uav], result.routes[alternative.uav]];
+  const theirs_m = alternative.other_length_m - other.length_m;
+  const theirs = amountFor(other.length_m > 0 ? other : own, theirs_m);
+  const ours = amountFor(own, alternative.total_change_m - theirs_m);
+  return theirs === null || ours === null ? null : theirs + ours;
+}
+
+/**
+ * For plans of the least flying time or energy of all together; empty where that is not counted.
+ *
+ * @param {RouteExplanation} explanation
+ * @param {ShownPlan["result"]} result
+ * @param {Record<string, string>} values
+ */
+function totalWords(explanation, result, values) {
+  const [amountFor, textOf] = result.objective === "energy" ? [energyFor_wh, energyText] : [timeFor_s, durationText];
+  const change = totalChange(explanation, result, amountFor);
+  if (change === null) return "";
+  const of = { ...values, amount: textOf(Math.abs(change)) };
+  return change >= 0
+    ? t("Giving {target} to {other} would take about {amount} more in total.", of)
+    : t("Giving {target} to {other} would take about {amount} less in total.", of);
+}
+
 /** Empty where there is no other UAV for it. @param {RouteExplanation} explanation @param {ShownPlan} plan */
 export function insteadWords(explanation, { result, targets }) {
   const { alternative } = explanation;
@@ -50,6 +78,8 @@ export function insteadWords(explanation, { result, targets }) {
   const isMore = alternative.total_change_m >= 0;
   if (alternative.is_beyond_range)
     return t("Giving {target} to {other} is not possible: it would fly {length}, its range is {range}.", values);
+  const inTotal = ["time", "energy"].includes(result.objective) ? totalWords(explanation, result, values) : "";
+  if (inTotal) return inTotal;
   if (result.objective !== "makespan")
     return isMore
       ? t("Giving {target} to {other} would fly {change} more in total.", values)

@@ -8,6 +8,7 @@ import { t } from "../../../text.js";
 import { durationText, energyText, lengthText } from "../../../units.js";
 import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../../plan_view.js";
 import { basisOf } from "../../selection.js";
+import { inUnit } from "./in_unit.js";
 import { insteadWords } from "./instead_words.js";
 
 /** @import { BindsEnum, ObjectiveEnum, RouteExplanation } from "../../../api_types.d.ts" */
@@ -32,7 +33,7 @@ export function routeExplanation(explanation, explaining) {
   const route = routesOf(plan)[explanation.uav];
   return [
     bar(explanation),
-    parts(explanation),
+    parts(explanation, route, plan.result.objective),
     zonesInTheWay(explanation),
     instead(explanation, plan),
     limit(plan, route),
@@ -71,16 +72,17 @@ function bar(explanation) {
   return h("div", { class: "why-bar", "aria-hidden": "true" }, pieces);
 }
 
-/** @param {RouteExplanation} explanation */
-function parts(explanation) {
-  const rows = partsOf(explanation).map(({ name, words, length_m }) =>
-    h(
+/** @param {RouteExplanation} explanation @param {ShownRoute} route @param {ObjectiveEnum} objective */
+function parts(explanation, route, objective) {
+  const rows = partsOf(explanation).map(({ name, words, length_m }) => {
+    const { text, beside } = inUnit(route, length_m, objective);
+    return h(
       "div",
       {},
       h("dt", {}, h("i", { class: name, "aria-hidden": "true" }), words),
-      h("dd", {}, `${name === "straight" ? "" : "+"}${lengthText(length_m)}`),
-    ),
-  );
+      h("dd", {}, `${name === "straight" ? "" : "+"}${text}`, beside && h("small", {}, ` ${beside}`)),
+    );
+  });
   return h("dl", { class: "why-parts" }, rows);
 }
 
@@ -164,11 +166,11 @@ const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 function heaviest({ heaviest: found }, route, { plan, actions, canPlan }) {
   const target = found && plan.targets[found.target];
   if (!found || !target || found.saves_m < MIN_M || route.targets.length < 2) return null;
-  const words = t("Without {target} {name} flies {length} less.", {
-    target: target.label,
-    name: route.name,
-    length: lengthText(found.saves_m),
-  });
+  const { text, beside } = inUnit(route, found.saves_m, plan.result.objective);
+  const values = { target: target.label, name: route.name, amount: text, length: beside };
+  const words = beside
+    ? t("Without {target} {name} flies about {amount} ({length}) less.", values)
+    : t("Without {target} {name} flies {amount} less.", values);
   return h(
     "p",
     {},
