@@ -32,6 +32,7 @@ from benchmarks.report import machine, table, write_section
 from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
 from tests.browser.conftest import CHROMIUM_FLAGS
+from tests.browser.operator_map import unlimited_type
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]
 DATA = PROJECT_DIR.parent / "shared" / "data" / "osm"
@@ -162,7 +163,10 @@ def planned_mission(page: Page) -> tuple[str, int]:
     ids, places = towers_of(page)
     targets, of_box = spread_targets(places)
     starts = [places[target] + BESIDE_DEG for target in targets]  # each has a UAV of its own: lines need not be connected
-    uavs = [posts(page, "/uavs", {"name": f"UAV {number}", "position": start.tolist()})["id"] for number, start in enumerate(starts)]
+    of = unlimited_type(page)
+    uavs = [
+        posts(page, "/uavs", {"name": f"UAV {number}", "position": start.tolist(), "type": of})["id"] for number, start in enumerate(starts)
+    ]
     body = {
         "name": "Benchmark",
         "uavs": [{"id": uav, "most_targets": 1} for uav in uavs],

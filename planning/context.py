@@ -92,9 +92,9 @@ class PlanningContext:
     cleared: the network cleared of zones at the heights flown; zone_index: all zones, or those of a mask (z,). Both may keep what they
     have made. targets: those of the request that are still there, deleted_targets the others, by their places in it.
 
-    out_of_service: of stored UAVs by key the state ("retired", "maintenance"); in_air: the keys of those reported to fly.
-    other_flights: those in the air within so many seconds of the departure. graph_version: of the network; map_version: of assets and
-    zones together.
+    out_of_service: of stored UAVs by key the state ("retired", "maintenance", "without_type", "without_range"); in_air: the keys of those
+    reported to fly. other_flights: those in the air within so many seconds of the departure. graph_version: of the network; map_version: of
+    assets and zones together.
     """
 
     rules: PlanningRules

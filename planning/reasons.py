@@ -76,6 +76,10 @@ SENTENCES = register_sentences(
         # why a UAV stays on the ground, and of what else a plan warns
         "uav_retired": gettext_noop("%(uav)s is retired and flies no more."),
         "uav_in_maintenance": gettext_noop("%(uav)s is in maintenance and does not fly."),
+        "uav_without_type": gettext_noop("%(uav)s is incomplete: it has no type. Choose one on its page."),
+        "uav_without_range": gettext_noop(
+            "%(uav)s is incomplete: its range is not stated. State a range or a battery, or choose unlimited range for its type."
+        ),
         "uav_inside_zone": gettext_noop("%(uav)s stands inside %(zone)s and cannot take off."),
         "uav_in_air": gettext_noop(
             "%(uav)s is reported to be in the air: the plan begins with a take-off from the ground where it was last seen."

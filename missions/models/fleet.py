@@ -23,7 +23,8 @@ class UavType(models.Model):
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uav_types")
     name = models.CharField(max_length=100)
-    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = not limited")
+    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery")
+    range_unlimited = models.BooleanField(default=False, db_default=False, help_text="chosen on purpose: no range limits its UAVs")
     cruise_speed_mps = models.FloatField(default=12.0)
     battery_wh = models.FloatField(null=True, blank=True, help_text="watt-hours of a full battery")
     mass_kg = models.FloatField(null=True, blank=True, help_text="kilograms at take-off; empty = 1.545, the Iris's")
@@ -124,7 +125,7 @@ class Uav(models.Model):
     is_demo = models.BooleanField(default=False, db_default=False, help_text="made with the demo data, and goes with them")
     location = models.PointField(srid=4326)
     located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
-    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's, else not limited")
+    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's")
     cruise_speed_mps = models.FloatField(null=True, blank=True, help_text="empty = its type's, else the usual speed")
     battery_wh = models.FloatField(null=True, blank=True, help_text="watt-hours of a full battery; empty = its type's")
     mass_kg = models.FloatField(null=True, blank=True, help_text="kilograms at take-off; empty = its type's")
@@ -141,7 +142,7 @@ class Uav(models.Model):
         max_length=MAX_EXTERNAL_ID_LENGTH, blank=True, default="", db_default="", help_text="another system's id of it; one UAV each"
     )
     attributes = models.JSONField(default=dict, db_default={}, blank=True, help_text="names and values of other systems")
-    end_action = models.CharField(max_length=10, choices=END_ACTIONS, default=EndAction.HOVER.value)
+    end_action = models.CharField(max_length=10, choices=END_ACTIONS, default=EndAction.RETURN.value)
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
     updated_at = models.DateTimeField(auto_now=True)
@@ -175,6 +176,14 @@ class Uav(models.Model):
     @property
     def range_m(self) -> float | None:
         return self.uav_type.max_range_m if self.max_range_m is None and self.uav_type else self.max_range_m
+
+    @property
+    def missing(self) -> list[str]:
+        """What must be stated before it can be planned: a type, and a limit of its flights, unless its type is unlimited on purpose."""
+        of_type = self.uav_type
+        battery_wh = self.battery_wh or (of_type.battery_wh if of_type else None)
+        is_limited = self.range_m is not None or battery_wh is not None or (of_type is not None and of_type.range_unlimited)
+        return [*([] if of_type else ["type"]), *([] if is_limited else ["range"])]
 
     @property
     def speed_mps(self) -> float:

@@ -1,6 +1,6 @@
 """Reads of the fleet: UAVs, their types, bases and credentials, always within one organisation."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from django.db.models import Count, Prefetch, Q, QuerySet
@@ -19,10 +19,15 @@ EVERY_STATE = "all"
 FIGURES = ("max_range_m", "cruise_speed_mps", *PERFORMANCE_KEYS, "sensors")  # what a mission copies from a UAV and plans use
 
 
-def states_out_of_service(uavs: list[int]) -> dict[int, UavState]:
-    """Return the state of each of these UAVs that is not active, by id."""
-    found = Uav.objects.filter(pk__in=uavs).exclude(state=UavState.ACTIVE).values_list("pk", "state")
-    return {pk: UavState(state) for pk, state in found}
+def states_out_of_service(uavs: Collection[int]) -> dict[int, str]:
+    """Return why each of these UAVs cannot be planned, by id: its state, or what it lacks as "without_type" or "without_range"."""
+    rows = Uav.objects.filter(pk__in=uavs).select_related("uav_type")
+    return {uav.pk: uav.state for uav in rows if uav.state != UavState.ACTIVE} | incomplete_uavs(rows)
+
+
+def incomplete_uavs(uavs: Iterable[Uav]) -> dict[int, str]:
+    """Return what each incomplete UAV in service lacks first, by id."""
+    return {uav.pk: f"without_{uav.missing[0]}" for uav in uavs if uav.state == UavState.ACTIVE and uav.missing}
 
 
 def uavs_of_organisation(organisation: Organisation) -> QuerySet[Uav]:

@@ -10,6 +10,7 @@ from inspection.selectors.node_ground import node_ground_m
 from inspection.selectors.planning import PlanningGround, heights_at, planning_read, terrain_at
 from inspection.selectors.terrain import tiles_around
 from missions.hooks.in_air import uavs_in_the_air
+from missions.models import UavState
 from missions.selectors.fleet import bases_of_organisation, states_out_of_service
 from missions.selectors.flights import flights_at_the_same_time
 from missions.selectors.planning_rules import planning_rules
@@ -34,6 +35,7 @@ def planning_context(
     dataset_version = ground.dataset_version
     terrain_dataset_version, heights_m = terrain_at(dataset_version), heights_at(dataset_version)  # version before any height is read
     stored = [uav.uav for uav in request.uavs if uav.uav is not None] if request is not None else []
+    in_air = frozenset(uavs_in_the_air(stored))
     return PlanningContext(
         rules=planning_rules(),
         network=ground.network(),
@@ -51,10 +53,17 @@ def planning_context(
         map_version=dataset_version[0],
         targets=targets,
         deleted_targets=deleted_targets,
-        out_of_service={key: state.value for key, state in states_out_of_service(stored).items()} if stored else {},
-        in_air=frozenset(uavs_in_the_air(stored)),
+        out_of_service=_out_of_service(stored, in_air),
+        in_air=in_air,
         other_flights=lambda window_s: _other_flights(request, window_s),
     )
+
+
+def _out_of_service(stored: Sequence[int], in_air: frozenset[int]) -> dict[int, str]:
+    """Return why UAVs cannot be planned. One in the air can be, whatever it lacks: it needs a way on, and a way down."""
+    if not stored:
+        return {}
+    return {key: state for key, state in states_out_of_service(stored).items() if key not in in_air or state in UavState.values}
 
 
 def _other_flights(request: PlanRequest | None, window_s: float) -> OtherFlights:

@@ -14,7 +14,7 @@ from planning.energy.performance import PERFORMANCE_KEYS, InvalidPerformance, pe
 from workspace.locale_negotiation import number_text
 
 TO_BE_FLOWN = (MissionState.PLANNED, MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
-OUT_OF_SERVICE = "uav_out_of_service"  # the plan's own warning: it does not use the UAV
+LEFT_OUT = {"uav_out_of_service", "uav_incomplete"}  # the plan's own warnings: it does not use the UAV
 # numbers of decimals, fewest first: the first that shows two values as different is used
 DECIMALS = {"mass_kg": 3, "rotor_disk_m2": 3}
 MAX_DECIMALS = 6
@@ -119,7 +119,7 @@ def _changes(missions: QuerySet[Mission]) -> dict[UUID, list[UavChange]]:
             count = needed.get(row["mission"], set())
             if _those_of(count, kept["sensors"]) == _those_of(count, now["sensors"]):
                 names.remove("sensors")
-        state = _unexpected_state(row, UavState(uavs[row["uav"]].state))
+        state = _unexpected_state(row, uavs[row["uav"]])
         figures = () if now is None else tuple(FigureChange(name, kept[name], now[name]) for name in names)
         change = UavChange(row["sequence"], row["uav"], row["name"], figures, state, fault, _said(row, kept, now))
         if change.concerns_plan or change.said:
@@ -173,11 +173,12 @@ def _sensors_needed(missions: QuerySet[Mission]) -> dict[UUID, set[str]]:
     return needed
 
 
-def _unexpected_state(row: dict[str, Any], state: UavState) -> UavState | None:
-    """Return the UAV's state if a plan uses it although it is not active, or excludes it although it is active again; else None."""
-    if row["mission__state"] == MissionState.DRAFT:
+def _unexpected_state(row: dict[str, Any], uav: Uav) -> UavState | None:
+    """Return the UAV's state if a plan uses it although it is not active, or excludes it although it can fly again; else None."""
+    state = UavState(uav.state)
+    if row["mission__state"] == MissionState.DRAFT or (state == UavState.ACTIVE and uav.missing):
         return None
-    is_left_out = any(warning["code"] == OUT_OF_SERVICE and warning["uav"] == row["sequence"] for warning in row["mission__plan_warnings"])
+    is_left_out = any(warning["code"] in LEFT_OUT and warning["uav"] == row["sequence"] for warning in row["mission__plan_warnings"])
     return state if is_left_out == (state == UavState.ACTIVE) else None
 
 

@@ -31,6 +31,9 @@ class UavTypeSerializer(KnownFieldsSerializer):
     id = serializers.IntegerField(read_only=True)
     name = serializers.CharField(max_length=100)
     max_range_m = AboveZeroField(allow_null=True, required=False, max_value=MAX_RANGE_M, help_text="metres on one battery")
+    range_unlimited = serializers.BooleanField(
+        required=False, help_text="chosen on purpose, without `max_range_m`: else UAVs without a range or battery are not planned"
+    )
     cruise_speed_mps = AboveZeroField(required=False, max_value=MAX_SPEED_MPS)
     battery_wh = BetweenField(BATTERIES_WH, allow_null=True, required=False, help_text="watt-hours of a full battery")
     mass_kg = BetweenField(MASSES_KG, allow_null=True, required=False, help_text="kilograms at take-off")
@@ -46,7 +49,10 @@ class UavTypeSerializer(KnownFieldsSerializer):
     updated_at = serializers.DateTimeField(read_only=True)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
-        """Check values that depend on each other: the hover power, and the mass and rotors that it supports."""
+        """Check values that depend on each other: the range and its absence, the hover power, and the mass and rotors that it supports."""
+        range_m, is_unlimited = (attrs.get(name, getattr(self.instance, name, None)) for name in ("max_range_m", "range_unlimited"))
+        if is_unlimited and range_m is not None:
+            raise serializers.ValidationError({"range_unlimited": _("State a range or choose unlimited range, not both.")})
         stored = {} if self.instance is None else {key: getattr(self.instance, key) for key in PERFORMANCE_KEYS}
         figures = stored | {key: attrs[key] for key in PERFORMANCE_KEYS if key in attrs}
         if figures.get("battery_wh") and not figures.get("mass_kg") and not {"battery_wh", "mass_kg"}.isdisjoint(attrs):
@@ -128,8 +134,8 @@ class UavMissionPageSerializer(serializers.Serializer):
 
 def uav_type_json(row: UavType) -> dict[str, Any]:
     names = (
-        "name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2",
-        "hover_power_w", "sensors", "uav_count", "revision", "updated_at",
+        "name", "max_range_m", "range_unlimited", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps",
+        "rotor_disk_m2", "hover_power_w", "sensors", "uav_count", "revision", "updated_at",
     )  # fmt: skip
     return {"id": row.pk} | {name: getattr(row, name) for name in names}
 

@@ -106,7 +106,7 @@ class UnassignedSerializer(serializers.Serializer):
 
 class WarningSerializer(serializers.Serializer):
     code = serializers.ChoiceField(
-        choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated", "shortest_ways", "by_hand_not_kept"]
+        choices=["uav_inside_zone", "uav_out_of_service", "uav_incomplete", "airspeed_not_stated", "shortest_ways", "by_hand_not_kept"]
     )
     uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV; null: of the whole plan")
     message = serializers.CharField()

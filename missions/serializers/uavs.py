@@ -53,7 +53,7 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
         required=False, help_text="MAVLink without a signature is taken for its own; changed by administrators alone"
     )
     max_range_m = AboveZeroField(
-        allow_null=True, required=False, max_value=MAX_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
+        allow_null=True, required=False, max_value=MAX_RANGE_M, help_text="metres on one battery; null: the type's"
     )
     cruise_speed_mps = AboveZeroField(
         allow_null=True, required=False, max_value=MAX_SPEED_MPS, help_text="null: the type's, else the usual"
@@ -72,6 +72,11 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
     end_action = serializers.ChoiceField(choices=END_ACTIONS, required=False)
     external_id = ExternalIdField(help_text="another system's id of it, one UAV each; empty: none")
     attributes = AttributesField(help_text="of other systems; a change replaces all of them")
+    missing = serializers.ListField(
+        child=serializers.ChoiceField(choices=["type", "range"]),
+        read_only=True,
+        help_text="what must be stated before it is planned, approved or started; empty: complete",
+    )
     twin_of = serializers.IntegerField(read_only=True, allow_null=True, help_text="the UAV that it is the simulated twin of")
     type_name = serializers.CharField(read_only=True)
     sensors = serializers.ListField(child=serializers.CharField(), read_only=True, help_text="its own and its type's")
@@ -159,6 +164,7 @@ def uav_feature(uav: UavWithUse) -> dict[str, Any]:
         "from_type": [
             field for field in FROM_TYPE if uav.uav_type and getattr(uav, field) is None and getattr(uav.uav_type, field) is not None
         ],
+        "missing": uav.missing,
         "twin_of": uav.twin_of_id,
         "located_at": uav.located_at,
         "mission_count": uav.mission_count,

@@ -14,7 +14,13 @@ from planning.plan import UnassignedTarget
 from planning.request import UavRequest
 from planning.trajectory.heights import inspection_agl_m, is_above_limit
 
-RETIRED = "retired"  # a state of stored UAVs; every other one out of service is for a time
+# why a stored UAV is not planned: the code of the warning, and that of its reason
+NOT_PLANNED = {
+    "retired": ("uav_out_of_service", "uav_retired"),
+    "maintenance": ("uav_out_of_service", "uav_in_maintenance"),
+    "without_type": ("uav_incomplete", "uav_without_type"),
+    "without_range": ("uav_incomplete", "uav_without_range"),
+}
 
 
 def deleted_target(target: int) -> UnassignedTarget:
@@ -58,15 +64,14 @@ class Grounding:
 
 
 def groundings(uavs: Sequence[UavRequest], airspace: Airspace) -> dict[int, Grounding]:
-    """By their places in the request, the UAVs that cannot take off: retired, in maintenance, or inside a zone."""
+    """By their places in the request, the UAVs that cannot take off: retired, in maintenance, incomplete, or inside a zone."""
     found: dict[int, Grounding] = {}
     for number, uav in enumerate(uavs):
         zone = zone_at(uav.position, airspace)
         state = None if uav.uav is None else airspace.context.out_of_service.get(uav.uav)
-        if state == RETIRED:
-            found[number] = Grounding("uav_out_of_service", Reason("uav_retired", {"uav": uav.name}))
-        elif state is not None:
-            found[number] = Grounding("uav_out_of_service", Reason("uav_in_maintenance", {"uav": uav.name}))
+        if state is not None:
+            code, reason = NOT_PLANNED[state]
+            found[number] = Grounding(code, Reason(reason, {"uav": uav.name}))
         elif zone is not None:
             found[number] = Grounding("uav_inside_zone", Reason("uav_inside_zone", {"uav": uav.name, **zone.params}))
     return found

@@ -2822,6 +2822,12 @@ export interface components {
             /** @description whether the other one returns, too */
             is_returning: boolean;
         };
+        /**
+         * @description * `type` - type
+         *     * `range` - range
+         * @enum {string}
+         */
+        MissingEnum: "type" | "range";
         Mission: {
             /** Format: uuid */
             id: string;
@@ -3662,7 +3668,7 @@ export interface components {
             allows_unsigned?: boolean;
             /**
              * Format: double
-             * @description metres on one battery; null: the type's, else not limited
+             * @description metres on one battery; null: the type's
              */
             max_range_m?: number | null;
             /**
@@ -3723,6 +3729,8 @@ export interface components {
              * @description metres on one battery
              */
             max_range_m?: number | null;
+            /** @description chosen on purpose, without `max_range_m`: else UAVs without a range or battery are not planned */
+            range_unlimited?: boolean;
             /** Format: double */
             cruise_speed_mps?: number;
             /**
@@ -6797,7 +6805,7 @@ export interface components {
             allows_unsigned?: boolean;
             /**
              * Format: double
-             * @description metres on one battery; null: the type's, else not limited
+             * @description metres on one battery; null: the type's
              */
             max_range_m?: number | null;
             /**
@@ -6969,7 +6977,7 @@ export interface components {
             allows_unsigned?: boolean;
             /**
              * Format: double
-             * @description metres on one battery; null: the type's, else not limited
+             * @description metres on one battery; null: the type's
              */
             max_range_m?: number | null;
             /**
@@ -7013,6 +7021,8 @@ export interface components {
             attributes?: {
                 [key: string]: string | number | boolean;
             };
+            /** @description what must be stated before it is planned, approved or started; empty: complete */
+            readonly missing: components["schemas"]["MissingEnum"][];
             /** @description the UAV that it is the simulated twin of */
             readonly twin_of: number | null;
             readonly type_name: string;
@@ -7063,7 +7073,7 @@ export interface components {
             allows_unsigned?: boolean;
             /**
              * Format: double
-             * @description metres on one battery; null: the type's, else not limited
+             * @description metres on one battery; null: the type's
              */
             max_range_m?: number | null;
             /**
@@ -7124,6 +7134,8 @@ export interface components {
              * @description metres on one battery
              */
             max_range_m?: number | null;
+            /** @description chosen on purpose, without `max_range_m`: else UAVs without a range or battery are not planned */
+            range_unlimited?: boolean;
             /** Format: double */
             cruise_speed_mps?: number;
             /**
@@ -7175,6 +7187,8 @@ export interface components {
              * @description metres on one battery
              */
             max_range_m?: number | null;
+            /** @description chosen on purpose, without `max_range_m`: else UAVs without a range or battery are not planned */
+            range_unlimited?: boolean;
             /** Format: double */
             cruise_speed_mps?: number;
             /**
@@ -7451,12 +7465,13 @@ export interface components {
         /**
          * @description * `uav_inside_zone` - uav_inside_zone
          *     * `uav_out_of_service` - uav_out_of_service
+         *     * `uav_incomplete` - uav_incomplete
          *     * `airspeed_not_stated` - airspeed_not_stated
          *     * `shortest_ways` - shortest_ways
          *     * `by_hand_not_kept` - by_hand_not_kept
          * @enum {string}
          */
-        WarningCodeEnum: "uav_inside_zone" | "uav_out_of_service" | "airspeed_not_stated" | "shortest_ways" | "by_hand_not_kept";
+        WarningCodeEnum: "uav_inside_zone" | "uav_out_of_service" | "uav_incomplete" | "airspeed_not_stated" | "shortest_ways" | "by_hand_not_kept";
         Waypoint: {
             /**
              * @description lon, lat [deg], WGS84
@@ -8115,6 +8130,7 @@ export type Measured = components['schemas']['Measured'];
 export type MeasuredAt = components['schemas']['MeasuredAt'];
 export type MetLeg = components['schemas']['MetLeg'];
 export type MetOnReturn = components['schemas']['MetOnReturn'];
+export type MissingEnum = components['schemas']['MissingEnum'];
 export type Mission = components['schemas']['Mission'];
 export type MissionApproval = components['schemas']['MissionApproval'];
 export type MissionAuthor = components['schemas']['MissionAuthor'];

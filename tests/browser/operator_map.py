@@ -44,6 +44,18 @@ def asks(page: Page, path: str) -> Any:
     return answer.json()
 
 
+def unlimited_type(page: Page) -> int:
+    """A type whose UAVs can be planned without a range; made once."""
+    found = [row["id"] for row in asks(page, "/uav-types?limit=1000")["results"] if row["name"] == "Unlimited"]
+    if found:
+        return int(found[0])
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    body = {"name": "Unlimited", "range_unlimited": True}
+    answer = page.request.post("/api/v1/uav-types", data=body, headers={"X-CSRFToken": token})
+    assert answer.ok, answer.text()
+    return int(answer.json()["id"])
+
+
 def look_at(page: Page, position: list[float], zoom: float = CLOSE_ZOOM) -> dict[str, float]:
     """Moves the map there by its address; the place on the screen. A panel that is still growing moves the map away: then once more."""
     for number in range(MAX_MOVES):
@@ -89,12 +101,19 @@ def second_facts(page: Page) -> dict[str, str]:
     return dict(zip(targets(page), page.locator("#target-list .what small").all_text_contents(), strict=True))
 
 
+def chooses_type(page: Page) -> None:
+    """In the dialog of a new UAV."""
+    page.get_by_role("dialog").get_by_label("Type").select_option(f"{unlimited_type(page)}")  # waits until the types are there
+
+
 def adds_uav(page: Page, name: str, position: list[float], *, range_km: float | None = None, base: str | None = None) -> None:
     page.get_by_role("button", name="Add a UAV").click()
+    unlimited_type(page)  # before the dialog reads the types
     place = look_at(page, position, 12)
     page.mouse.click(place["x"], place["y"])
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Name").fill(name)
+    chooses_type(page)
     if base:
         dialog.get_by_label("Base").select_option(base)
     if range_km:

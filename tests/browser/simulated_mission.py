@@ -9,7 +9,7 @@ from typing import Any
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.regions import region
 from tests.browser.test_fleet import writes
 
@@ -46,7 +46,17 @@ def simulated_uavs(page: Page, *names: str, at: list[float], **more: Any) -> lis
     """Of the fleet, as an administrator makes them."""
     return [
         writes(
-            page, "POST", "/uavs", {"name": name, "position": beside(at, number), "is_simulated": True, "cruise_speed_mps": 10.0, **more}
+            page,
+            "POST",
+            "/uavs",
+            {
+                "name": name,
+                "position": beside(at, number),
+                "is_simulated": True,
+                "type": unlimited_type(page),
+                "cruise_speed_mps": 10.0,
+                **more,
+            },
         )["id"]
         for number, name in enumerate(names)
     ]

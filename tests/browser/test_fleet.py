@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 
@@ -132,7 +132,7 @@ def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor
 
 def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
-    uav = writes(page, "POST", "/uavs", {"name": "Plover", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Plover", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     page.get_by_role("button", name="Edit").click()
     page.locator("#fleet-map[data-idle]").wait_for(state="attached")
@@ -155,7 +155,7 @@ def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) ->
 
 def test_a_uav_is_retired_with_a_way_back_and_is_not_offered_for_missions(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
-    uav = writes(page, "POST", "/uavs", {"name": "Dotterel", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Dotterel", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     details(page).get_by_role("button", name="Retire").click()
     expect(page.get_by_text("Dotterel is retired.")).to_be_visible()
@@ -177,7 +177,7 @@ def test_a_deleted_base_comes_back_and_one_in_use_stays(visitor: Visitor) -> Non
     page = visitor.signs_in("opal")
     used = writes(page, "POST", "/bases", {"name": "Used yard", "position": YARD})["id"]
     spare = writes(page, "POST", "/bases", {"name": "Spare yard", "position": YARD})["id"]
-    writes(page, "POST", "/uavs", {"name": "Whimbrel", "base": used})
+    writes(page, "POST", "/uavs", {"name": "Whimbrel", "base": used, "type": unlimited_type(page)})
     fleet(page, f"?tab=bases&id={used}")
     details(page).get_by_role("button", name="Delete Used yard").click()
     expect(page.get_by_text("A UAV has this base. Give it another one first.")).to_be_visible()
@@ -192,7 +192,7 @@ def test_a_deleted_base_comes_back_and_one_in_use_stays(visitor: Visitor) -> Non
 
 def test_a_token_is_shown_once_replaced_and_revoked(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal", theme="dark")
-    uav = writes(page, "POST", "/uavs", {"name": "Turnstone", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Turnstone", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     details(page).get_by_role("button", name="Create: Token of the HTTP link").click()
     secret = details(page).locator("code")
@@ -212,7 +212,7 @@ def test_a_token_is_shown_once_replaced_and_revoked(visitor: Visitor, picture: P
 
 def test_two_people_in_one_uav_see_each_others_changes(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
-    uav = writes(page, "POST", "/uavs", {"name": "Godwit", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Godwit", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     details(page).get_by_role("button", name="Edit").click()
     page.get_by_label("Serial number").fill("SN-1")
@@ -229,7 +229,7 @@ def test_two_people_in_one_uav_see_each_others_changes(visitor: Visitor) -> None
 
 def test_what_was_typed_stays_when_the_network_is_gone_and_comes_back_when_it_was_left(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
-    uav = writes(page, "POST", "/uavs", {"name": "Curlew", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Curlew", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     details(page).get_by_role("button", name="Edit").click()
     page.get_by_label("Serial number").fill("SN-2")
@@ -269,7 +269,7 @@ def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
 @pytest.mark.parametrize(("theme", "size"), [("dark", (390, 844)), pytest.param("light", (1440, 900), marks=pytest.mark.long)])
 def test_axe_finds_nothing_serious_in_details_and_forms(visitor: Visitor, theme: str, size: tuple[int, int], picture: Picture) -> None:
     page = visitor.signs_in("opal", theme=theme, size=size)
-    uav = writes(page, "POST", "/uavs", {"name": f"Dunlin {theme}", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": f"Dunlin {theme}", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     expect(details(page).get_by_text("No mission uses it yet.")).to_be_visible()
     assert faults(page) == []

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
-from tests.browser.operator_map import asks
+from tests.browser.operator_map import asks, unlimited_type
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import Picture, details, fleet, writes
@@ -43,7 +43,7 @@ def reports(site: Site, token: str, **record: Any) -> None:
 
 def test_a_uav_that_is_heard_over_http_says_so_in_its_panel(site: Site, visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
-    uav = writes(page, "POST", "/uavs", {"name": "Sandpiper", "position": YARD, "link": "http"})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Sandpiper", "position": YARD, "type": unlimited_type(page), "link": "http"})["id"]
     token = writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"]
     fleet(page, f"?id={uav}")
     expect(details(page).get_by_text("Never connected.")).to_be_visible()
@@ -59,7 +59,7 @@ def test_a_uav_that_is_heard_over_http_says_so_in_its_panel(site: Site, visitor:
 @pytest.mark.long
 def test_only_an_administrator_says_that_a_uav_is_simulated_or_needs_no_signature(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
-    uav = writes(page, "POST", "/uavs", {"name": "Stint", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Stint", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     page.get_by_role("button", name="Edit", exact=True).click()
     switch = page.get_by_role("switch", name="MAVLink without a signature")

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks, stores_mission, targets, wait_for_map
+from tests.browser.operator_map import asks, chooses_type, stores_mission, targets, unlimited_type, wait_for_map
 from tests.browser.planning.test_unsaved_changes import opens_mission, picks_from_the_search, removes_first_target
 from tests.browser.regions import region
 
@@ -87,10 +87,12 @@ def test_a_new_mission_stores_itself_with_its_first_plan_and_then_each_change(vi
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
     picks_from_the_search(page, "bridge")
     expect(page.locator("#save-state")).to_have_text("Kept in this browser until it is planned or saved")
+    unlimited_type(page)
     page.get_by_role("button", name="Add a UAV").click()
     page.locator("#map canvas").click()
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Name").fill("Osprey")
+    chooses_type(page)
     dialog.get_by_role("button", name="Add").click()
     expect(page.get_by_role("checkbox", name="Osprey")).to_be_checked()
     page.keyboard.press("p")

@@ -23,6 +23,11 @@ def patch(client: Client, path: str, body: Any, **headers: str) -> HttpResponse:
     return client.patch(f"/api/v1/{path}", json.dumps(body), content_type="application/json", headers=sent)
 
 
+def unlimited_type(client: Client) -> int:
+    """A type whose UAVs are complete without a range."""
+    return int(post(client, "uav-types", {"name": "Unlimited", "range_unlimited": True}).json()["id"])
+
+
 def plan_body(*targets: Asset | dict[str, Any], **more: Any) -> dict[str, Any]:
     listed = [target if isinstance(target, dict) else {"asset": target.pk} for target in targets]
     return {"uavs": [TERN], "targets": listed, "objective": "total", "return_to_start": False} | more

@@ -136,7 +136,7 @@ def test_an_approved_mission_is_frozen(here: World, person: User, change: str) -
 
 
 def test_changes_of_the_fleet_do_not_reach_what_was_approved(here: World, person: User) -> None:
-    uav_type = UavType.objects.create(name="Quad", cruise_speed_mps=12.0)
+    uav_type = UavType.objects.create(name="Quad", cruise_speed_mps=12.0, range_unlimited=True)
     (tern,) = fleet(uav_type=uav_type)
     _mission, approval = approved(person, [tern], here.towers[:2])
     UavType.objects.update(cruise_speed_mps=3.0, max_range_m=10.0)

@@ -30,7 +30,7 @@ from missions.models import (
     UavCommand,
 )
 from missions.selectors.missions import approval_in_force, mission_of_organisation
-from missions.services.approval.checks import reasons_against
+from missions.services.approval.checks import incomplete_reasons, reasons_against
 from missions.services.approval.document import approval_document, content_sha256
 from missions.services.commands.call_signs import give_call_sign
 from missions.services.commands.outbox import end_commands, queue_command
@@ -56,7 +56,7 @@ def approve_mission(
     """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason against flying it so.
 
     The checks of later apps are skipped for a mission that takes over while UAVs are in the air, which cannot wait for a rehearsal, and for
-    one flown only by simulated twins.
+    one flown only by simulated twins. Incomplete UAVs are refused, except in the air.
 
     A failed rehearsal of this plan is among these reasons unless `failed_rehearsal_reason` says why the mission is approved nevertheless.
 
@@ -72,7 +72,8 @@ def approve_mission(
         loaded = mission_of_organisation(held.organisation, held.pk)
         further = [] if is_under_way or _is_flown_by_twins(held) else further_reasons(loaded)
         unanswered = [reason for reason in further if not (failed_rehearsal_reason and reason.code == ACKNOWLEDGE_FAILED_REHEARSAL)]
-        refuse_for([*reasons_against(loaded, now=timezone.now()), *unanswered])
+        incomplete = [] if is_under_way else incomplete_reasons(loaded)
+        refuse_for([*incomplete, *reasons_against(loaded, now=timezone.now()), *unanswered])
         document = approval_document(loaded, longest_leg_m=longest_leg_m)
         if document["ground"]["revision"] != checked_revision:
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))

@@ -1,6 +1,6 @@
 """Reasons against flying a mission's stored routes, checked before it is approved and again before it is sent."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
@@ -10,6 +10,7 @@ from django.utils.translation import gettext as _
 from inspection.selectors import ground_heights_m, ground_revision
 from inspection.selectors.planning import planning_read
 from missions.models import Mission, MissionState, Route
+from missions.selectors.fleet import incomplete_uavs
 from missions.selectors.missions import mission_of_organisation
 from missions.selectors.stale_plans import causes_on_the_routes
 from missions.selectors.uav_changes import uav_changes
@@ -17,7 +18,9 @@ from missions.services.commands.refused import RefusalReason
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.missions import MissionChanged
 from missions.services.stored_routes import stored_routes
+from operation.reasons import Reason
 from planning.checks.wires import spans_in_the_way
+from workspace.reason_texts import reason_text
 
 TOO_NEAR = {"too_near", "hovers_in_the_way"}
 
@@ -45,6 +48,20 @@ def _reversed_visits(mission: Mission) -> list[RefusalReason]:
     twins = mission.mission_uavs.filter(uav__twin_of__isnull=False).values_list("sequence", "name")
     words = _("%(uav)s is a simulated twin, which flies simulated copies of missions alone. Choose another UAV.")
     return [RefusalReason("simulated_twin", words % {"uav": name}, sequence) for sequence, name in twins]
+
+
+def incomplete_reasons(mission: Mission, uavs: Collection[int] | None = None) -> list[RefusalReason]:
+    """Return a reason for each UAV with a route that lacks its type or range; of `uavs` alone if given."""
+    rows = (
+        mission.mission_uavs.filter(route__geometry__isnull=False, uav__isnull=False).select_related("uav__uav_type").order_by("sequence")
+    )
+    chosen = [row for row in rows if uavs is None or row.uav_id in uavs]
+    lacking = incomplete_uavs(row.uav for row in chosen if row.uav is not None)
+    return [
+        RefusalReason("uav_incomplete", reason_text(Reason(f"uav_{lacking[row.uav_id]}", {"uav": row.name})), row.sequence)
+        for row in chosen
+        if row.uav_id in lacking
+    ]
 
 
 @dataclass(frozen=True)

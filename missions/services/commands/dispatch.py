@@ -27,7 +27,7 @@ from missions.models import (
 from missions.selectors.commands import upload_of
 from missions.selectors.missions import approval_in_force
 from missions.services.approval.approval import change_state, locked_mission, uavs_that_may_hold
-from missions.services.approval.checks import check_approval, valid_check
+from missions.services.approval.checks import check_approval, incomplete_reasons, valid_check
 from missions.services.approval.document import content_sha256
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import queue_command
@@ -86,7 +86,8 @@ def dispatch_mission(
         if not any(0 < flight <= len(route["flights"]) for route in wanted):
             raise refuse("no_flight", _("This UAV has no such flight."), place)
         against = valid_check(check, held, now=timezone.now()).reasons
-        refuse_for([*_uav_reasons(held, wanted), *_link_reasons(wanted), *against])
+        incomplete = incomplete_reasons(held, [route["uav"] for route in wanted])
+        refuse_for([*_uav_reasons(held, wanted), *_link_reasons(wanted), *incomplete, *against])
         to_send = [route for route in wanted if place is not None or not _is_on_its_way(approval, route["uav"])]
         refuse_for([] if to_send else [RefusalReason("nothing_to_send", _("Every UAV has its route already, or it is on its way."))])
         if place is not None:

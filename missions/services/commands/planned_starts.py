@@ -27,6 +27,7 @@ from missions.models import (
 from missions.selectors.commands import places_in_flight, upload_of
 from missions.selectors.missions import approval_in_force
 from missions.services.approval.approval import locked_mission
+from missions.services.approval.checks import incomplete_reasons
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import withdraw
 from missions.services.commands.refused import RefusalReason, Refused, refuse, refuse_for
@@ -83,7 +84,7 @@ def begin_planned_starts(
         routes = _chosen(_routes_to_start(held, approval), wanted)
         if not routes:
             raise refuse("nothing_to_start", _("No UAV of this mission waits for its first start."))
-        refuse_for(_not_loaded(routes, approval))
+        refuse_for([*_not_loaded(routes, approval), *incomplete_reasons(held, wanted)])
         refuse_for(against)
         first_s = routes[0].departs_s
         begin = timezone.now() + timedelta(seconds=LEAD_S)

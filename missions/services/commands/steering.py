@@ -27,7 +27,7 @@ from missions.models import (
 from missions.selectors.commands import route_commands, upload_of
 from missions.selectors.fleet import performance_of
 from missions.selectors.missions import approval_in_force
-from missions.services.approval.checks import ApprovalCheck, check_approval, valid_check
+from missions.services.approval.checks import ApprovalCheck, check_approval, incomplete_reasons, valid_check
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import queue_command
 from missions.services.commands.refused import RefusalReason, refuse, refuse_for
@@ -157,6 +157,8 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
     if kind in FROM_THE_GROUND and uavs_down_off_plan([uav.pk]):
         words = _("%(uav)s has crashed, or is down away from its plan: close that alert with what became of it before it is started.")
         raise refuse("is_down", words % values)
+    if kind in FROM_THE_GROUND:
+        refuse_for(incomplete_reasons(mission, [uav.pk]))
     was_started = approval.commands.filter(uav=uav, kind=CommandKind.START, sent_at__isnull=False).exists()
     if kind == CommandKind.RESUME and not (mission.state == MissionState.ACTIVE and was_started):
         raise refuse("not_started", _("%(uav)s has not started its mission: there is nothing to go on with.") % values)

@@ -12,8 +12,8 @@ from missions.services.fleet.rows import deleted, facts_to_restore, locked, stor
 from workspace.models import Organisation, User
 
 TYPE_FIELDS = (
-    "name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2",
-    "hover_power_w", "sensors",
+    "name", "max_range_m", "range_unlimited", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps",
+    "rotor_disk_m2", "hover_power_w", "sensors",
 )  # fmt: skip
 
 

@@ -201,6 +201,8 @@ def _spare_uavs(request: PlanRequest, place: ResolvedTarget, organisation: Organ
     taken = {uav.uav for uav in request.uavs if uav.uav is not None}
     found = []
     for uav in uavs_of_organisation(organisation).filter(state=UavState.ACTIVE).exclude(pk__in=taken):
+        if uav.missing:
+            continue
         at = LonLat(*uav.location.coords)
         away_m = float(distance_m(np.array([at]), np.array([place.course[0]]))[0])
         if uav.range_m is None or away_m <= uav.range_m:

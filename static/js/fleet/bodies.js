@@ -38,6 +38,7 @@ function bodyOfUav(uav) {
 const bodyOfType = (type) => ({
   name: type.name,
   max_range_m: type.max_range_m,
+  range_unlimited: type.range_unlimited,
   cruise_speed_mps: type.cruise_speed_mps,
   battery_wh: type.battery_wh,
   mass_kg: type.mass_kg,
@@ -75,7 +76,7 @@ export function blankBody(tab) {
       max_airspeed_mps: null,
       battery_percent: null,
       sensor: "",
-      end_action: "hover",
+      end_action: "return",
       link: "mavlink",
       allows_unsigned: false,
       is_simulated: false,
@@ -84,6 +85,7 @@ export function blankBody(tab) {
     return {
       name: "",
       max_range_m: null,
+      range_unlimited: false,
       cruise_speed_mps: 12,
       battery_wh: null,
       mass_kg: null,

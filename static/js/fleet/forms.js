@@ -1,7 +1,7 @@
 /** The forms of a UAV, a type and a base. */
 
 import { h, icon } from "../dom.js";
-import { numberField, textField } from "../page/fields.js";
+import { numberField, switchField, textField } from "../page/fields.js";
 import { t } from "../text.js";
 import { BOUNDS, IRIS } from "../uav_figures.js";
 import { coordinateText, LONG_UNIT, lengthText, SPEED_UNIT, speedText } from "../units.js";
@@ -26,8 +26,17 @@ function typeFields(type) {
     factor: LONG_UNIT.metres,
     unit: LONG_UNIT.unit,
     min: 0.1,
-    hint: t("On one battery. Blank: not limited."),
+    hint: t("On one battery. Blank: its UAVs are incomplete, unless a battery is stated."),
   });
+  const unlimited = switchField("range_unlimited", t("Unlimited range"), type.range_unlimited, {
+    hint: t("Plans then set no limit to the length of its flights."),
+  });
+  const turnOff = () => {
+    range.input.disabled = unlimited.read();
+    if (unlimited.read()) range.input.value = "";
+  };
+  unlimited.input.addEventListener("change", turnOff);
+  turnOff();
   const speed = numberField("cruise_speed_mps", t("Speed"), type.cruise_speed_mps, {
     factor: SPEED_UNIT.mps,
     unit: SPEED_UNIT.unit,
@@ -76,10 +85,11 @@ function typeFields(type) {
   });
   const sensorList = { ...sensors, read: () => listOf(sensors.read()) };
   return {
-    fields: [name, range, speed, battery, mass, reserve, airspeed, disk, hover, sensorList],
+    fields: [name, range, unlimited, speed, battery, mass, reserve, airspeed, disk, hover, sensorList],
     elements: [
       name.element,
       pair(range, speed),
+      unlimited.element,
       pair(battery, mass),
       pair(reserve, airspeed),
       pair(disk, hover),

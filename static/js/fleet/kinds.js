@@ -48,7 +48,7 @@ const UAVS = {
       words: t("Name"),
       cell: (uav) => [uav.is_simulated && simulatedMark(), caption(uav.type_name || t("no type"))],
     },
-    { words: t("State"), cell: (uav) => stateChip(uav.state) },
+    { words: t("State"), cell: (uav) => stateChip(uav) },
     {
       words: t("Base"),
       class: "wide",
@@ -104,14 +104,14 @@ const TYPES = {
   path: "/uav-types",
   columns: [
     { words: t("Name"), cell: (type) => caption(type.sensors.join(", ")) },
-    { words: t("Range"), class: "number", cell: (type) => rangeText(type.max_range_m) },
+    { words: t("Range"), class: "number", cell: (type) => rangeText(type.max_range_m, type.range_unlimited) },
     { words: t("Speed"), class: "number wide", cell: (type) => speedText(type.cruise_speed_mps) },
     { words: t("Battery"), class: "number wide", cell: (type) => wattHours(type.battery_wh) },
     { words: t("Mass"), class: "number wide", cell: (type) => kilograms(type.mass_kg) },
     { words: t("UAVs"), class: "number", cell: (type) => `${type.uav_count || "—"}` },
   ],
   facts: (type) => [
-    term(t("Range"), rangeText(type.max_range_m)),
+    term(t("Range"), rangeText(type.max_range_m, type.range_unlimited)),
     term(t("Speed"), speedText(type.cruise_speed_mps)),
     term(t("Battery"), wattHours(type.battery_wh)),
     term(t("Mass"), kilograms(type.mass_kg)),

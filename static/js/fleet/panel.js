@@ -9,7 +9,7 @@ import { mountConnection } from "./connection.js";
 import { mountCredentials } from "./credentials.js";
 import { mountTypeAirframe } from "./type_airframe.js";
 import { mountTypeLimits } from "./type_limits.js";
-import { MISSION_STATES, stateChip } from "./words.js";
+import { MISSION_STATES, missingList, stateChip } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { UavMission, UavMissionPage, UavState } from "../api_types.d.ts" */
@@ -160,7 +160,8 @@ export function mountPanel(how) {
     setChildren(
       panel,
       back(),
-      h("div", { class: "panel-head" }, title, uav?.is_simulated && simulatedMark(), uav && stateChip(uav.state)),
+      h("div", { class: "panel-head" }, title, uav?.is_simulated && simulatedMark(), uav && stateChip(uav)),
+      uav && missingList(uav),
       uav?.state === "retired" &&
         h("p", { class: "quiet-text" }, t("It is not offered for new missions and does not connect.")),
       canPlan && actsOf(row, uav, acts),

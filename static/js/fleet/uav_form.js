@@ -4,8 +4,8 @@ import { h } from "../dom.js";
 import { choiceField, numberField, switchField, textField } from "../page/fields.js";
 import { t } from "../text.js";
 import { BOUNDS, boundsIn, usualOf } from "../uav_figures.js";
-import { LONG_UNIT, lengthText, SPEED_UNIT, speedText } from "../units.js";
-import { ENDS, LINKS } from "./words.js";
+import { LONG_UNIT, SPEED_UNIT, speedText } from "../units.js";
+import { ENDS, LINKS, rangeText } from "./words.js";
 
 /** @import { OwnFigure } from "../uav_figures.js" */
 /** @import { Field, FleetBase, FleetType, FormFields, Position, UavBody } from "./types.d.ts" */
@@ -143,10 +143,10 @@ function figureFields(uav) {
 const usualText = (type) =>
   type
     ? t("Blank: {range} and {speed} of the type.", {
-        range: type.max_range_m === null ? t("no limit") : lengthText(type.max_range_m),
+        range: rangeText(type.max_range_m, type.range_unlimited),
         speed: speedText(type.cruise_speed_mps),
       })
-    : t("Blank: range not limited, default speed.");
+    : t("Blank: range not stated, default speed.");
 
 /**
  * The figures that a UAV may override. The value in effect is the placeholder of an empty field.
@@ -217,7 +217,7 @@ function toBaseButton(base, { bases, place, isNew }) {
 export function uavFields(uav, context) {
   const { types, bases, place, isAdministrator } = context;
   const name = textField("name", t("Name"), uav.name, { required: true });
-  const type = idField("type", t("Type"), uav.type, types);
+  const type = idField("type", t("Type"), uav.type, types, { required: true });
   const base = idField("base", t("Base"), uav.base, bases);
   const figures = ownFigures(uav, type, types);
   const charge = numberField("battery_percent", t("Battery charge"), uav.battery_percent, {
@@ -257,9 +257,13 @@ export function uavFields(uav, context) {
  * @param {string} label
  * @param {number | null} value
  * @param {{ id: number, name: string }[]} rows
+ * @param {{ required?: boolean }} [how]
  */
-function idField(name, label, value, rows) {
+function idField(name, label, value, rows, { required = false } = {}) {
   /** @type {[string | number, string][]} */
-  const choices = [["", t("not stated")], ...rows.map((row) => /** @type {[number, string]} */ ([row.id, row.name]))];
-  return /** @type {Field<number | null>} */ (choiceField(name, label, value, choices, { isNumber: true }));
+  const choices = [
+    ["", required ? t("Choose a type") : t("not stated")],
+    ...rows.map((row) => /** @type {[number, string]} */ ([row.id, row.name])),
+  ];
+  return /** @type {Field<number | null>} */ (choiceField(name, label, value, choices, { isNumber: true, required }));
 }

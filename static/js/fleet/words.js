@@ -43,9 +43,41 @@ export const LINKS = {
   http: { words: t("a companion computer over HTTP"), by: t("over HTTP") },
 };
 
-/** @param {UavState} state */
-export function stateChip(state) {
-  return h("span", { class: `chip ${state}` }, icon(STATES[state].icon, "small"), STATES[state].words);
+/** @type {Record<Uav["missing"][number], string>} */
+const MISSING = { type: t("Type"), range: t("Range, battery, or unlimited range chosen for its type") };
+
+/** A UAV in service that lacks something is not planned. @param {Pick<Uav, "state" | "missing">} uav */
+const isIncomplete = ({ state, missing }) => state === "active" && missing.length > 0;
+
+/** @param {Pick<Uav, "state" | "missing">} uav */
+export function stateChip(uav) {
+  const { words, icon: image } = isIncomplete(uav)
+    ? { words: t("Incomplete"), icon: "circle-alert" }
+    : STATES[uav.state];
+  return h("span", { class: `chip ${isIncomplete(uav) ? "incomplete" : uav.state}` }, icon(image, "small"), words);
+}
+
+/** What an incomplete UAV needs before it can be planned, as a checklist; null where it is complete. @param {Uav} uav */
+export function missingList(uav) {
+  if (!isIncomplete(uav)) return null;
+  return h(
+    "div",
+    { class: "notice warning" },
+    icon("circle-alert"),
+    h(
+      "div",
+      {},
+      h("p", {}, t("It cannot be planned, approved or started before this is stated:")),
+      h(
+        "ul",
+        { class: "checklist" },
+        Object.entries(MISSING).map(([name, words]) => {
+          const isMissing = uav.missing.some((one) => one === name);
+          return h("li", {}, icon(isMissing ? "circle" : "check", "small"), words, !isMissing && ` (${t("stated")})`);
+        }),
+      ),
+    ),
+  );
 }
 
 /** @param {string} end */
@@ -58,8 +90,11 @@ export function ageText(uav) {
   return uav.located_at ? whenText(uav.located_at) : t("age not known");
 }
 
-/** @param {number | null} range_m */
-export const rangeText = (range_m) => (range_m === null ? t("not limited") : lengthText(range_m));
+/** @param {number | null} range_m @param {boolean} [isUnlimited] */
+export const rangeText = (range_m, isUnlimited = false) => {
+  if (range_m !== null) return lengthText(range_m);
+  return isUnlimited ? t("unlimited") : t("not stated");
+};
 
 /** @param {Pick<Uav, "from_type">} uav @param {string} field @param {string} words */
 export function fromType(uav, field, words) {

@@ -11,12 +11,13 @@ import { exactEnergyText, lengthText, speedText } from "../units.js";
  *
  * @param {FleetUav} uav
  */
-const factsIn = ({ base, base_name, type_name, battery_percent, state, is_simulated, usual }) => ({
+const factsIn = ({ base, base_name, type_name, battery_percent, state, missing, is_simulated, usual }) => ({
   base,
   base_name,
   type_name,
   battery_percent,
   state,
+  missing,
   is_simulated,
   usual,
 });
@@ -56,8 +57,8 @@ export function inFleetOrder(state) {
   return standingUavs(state).sort((a, b) => place(a) - place(b));
 }
 
-/** Whether it may be added: not in maintenance or retired. @param {Pick<PickedUav, "state">} uav */
-export const canFly = ({ state }) => state === undefined || state === "active";
+/** Whether it may be added: complete, and not in maintenance or retired. @param {Pick<PickedUav, "state" | "missing">} uav */
+export const canFly = ({ state, missing }) => (state === undefined || state === "active") && !missing?.length;
 
 /**
  * What a fleet can be narrowed by: { base, sensor, type }, each a list of the names that occur.

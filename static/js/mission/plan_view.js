@@ -14,7 +14,7 @@ import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 /** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
 
 /** Warnings of a plan that keep a UAV from flying. @type {string[]} */
-export const GROUNDING = ["uav_inside_zone", "uav_out_of_service"];
+export const GROUNDING = ["uav_inside_zone", "uav_out_of_service", "uav_incomplete"];
 
 /** @type {{ value: Plan["objective"], words: string, meaning: string }[]} */
 export const OBJECTIVES = [

@@ -111,6 +111,8 @@ export interface FleetFacts {
   base: number | null;
   base_name: string;
   state: UavState;
+  /** what must be stated before it can be planned */
+  missing: string[];
   type_name: string;
   battery_percent: number | null;
   heading_deg: number | null;

@@ -157,12 +157,12 @@ export function numberField(
  * @param {string} label
  * @param {unknown} value
  * @param {readonly (readonly [string | number, string])[]} choices
- * @param {{ isNumber?: boolean } & How} [options]
+ * @param {{ isNumber?: boolean, required?: boolean } & How} [options]
  */
-export function choiceField(name, label, value, choices, { isNumber = false, ...how } = {}) {
+export function choiceField(name, label, value, choices, { isNumber = false, required = false, ...how } = {}) {
   const input = h(
     "select",
-    { class: "input" },
+    { class: "input", required },
     choices.map(([choice, words]) =>
       h("option", { value: `${choice}`, selected: `${choice}` === `${value ?? ""}` }, words),
     ),

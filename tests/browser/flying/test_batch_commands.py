@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.uav_over_http import Flyer
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
@@ -29,7 +29,11 @@ def sent(page: Page, site: Site, name: str, row: int) -> Flown:
     uavs = []
     for column, uav in enumerate(FLEET[name]):
         at = [region.east[0] + 0.012 * column, region.east[1] - 0.006 * row]
-        uavs.append(writes(page, "POST", "/uavs", {"name": uav, "position": at, "is_simulated": True, "link": "http"})["id"])
+        uavs.append(
+            writes(
+                page, "POST", "/uavs", {"name": uav, "position": at, "is_simulated": True, "type": unlimited_type(page), "link": "http"}
+            )["id"]
+        )
     tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]
     body = {
         "name": name, "uavs": [{"id": uav, "most_targets": 2} for uav in uavs], "targets": [{"asset": tower["id"]} for tower in towers[:3]],

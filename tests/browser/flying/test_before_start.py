@@ -11,7 +11,7 @@ from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.test_batch_commands import ends
 from tests.browser.flying.uav_over_http import Flyer
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
@@ -31,7 +31,9 @@ def approved(visitor: Visitor, site: Site) -> Iterator[Approved]:
     towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=5")["features"]
     places = [[region.east[0] + 0.012 * column, region.east[1]] for column in range(2)]
     uavs = [
-        writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "link": "http"})["id"]
+        writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "type": unlimited_type(page), "link": "http"})[
+            "id"
+        ]
         for name, at in zip(("Bunting", "Pipit"), places, strict=True)
     ]
     tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import TOO_WIDE, asks, wait_for_map
+from tests.browser.operator_map import TOO_WIDE, asks, unlimited_type, wait_for_map
 from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
@@ -28,7 +28,7 @@ def mission(visitor: Visitor) -> Iterator[str]:
     known = {uav["properties"]["name"]: uav["id"] for uav in asks(page, "/uavs?limit=200")["features"]}
     for name, position in STARTS.items():
         if name not in known:
-            made = posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})
+            made = posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True, "type": unlimited_type(page)})
             assert made.status == 201, made.text()
             known[name] = made.json()["id"]
     towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=2")["features"]

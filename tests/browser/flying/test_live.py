@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.uav_over_http import Flyer
-from tests.browser.operator_map import TOO_WIDE, asks
+from tests.browser.operator_map import TOO_WIDE, asks, unlimited_type
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
 from tests.browser.simulated_mission import card, opened, starts
@@ -29,7 +29,9 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
     """The address of a mission that is approved and sent to two UAVs, and the UAVs, which have taken it."""
     page = visitor.signs_in("ada")
     uavs = [
-        writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "link": "http"})["id"]
+        writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "type": unlimited_type(page), "link": "http"})[
+            "id"
+        ]
         for name, at in STARTS.items()
     ]
     tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]

@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.uav_over_http import Flyer
-from tests.browser.operator_map import TOO_WIDE, asks
+from tests.browser.operator_map import TOO_WIDE, asks, unlimited_type
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
@@ -36,7 +36,12 @@ def sent(page: Page, site: Site, number: int, towers: list[dict[str, Any]]) -> l
     """A mission that is on board of its ten UAVs."""
     at = [[tower["geometry"]["coordinates"][0] + BESIDE_DEG, tower["geometry"]["coordinates"][1]] for tower in towers]  # one at each
     made = [
-        writes(page, "POST", "/uavs", {"name": f"Falcon {number}{column}", "position": place, "is_simulated": True, "link": "http"})["id"]
+        writes(
+            page,
+            "POST",
+            "/uavs",
+            {"name": f"Falcon {number}{column}", "position": place, "is_simulated": True, "type": unlimited_type(page), "link": "http"},
+        )["id"]
         for column, place in enumerate(at)
     ]
     body = {

@@ -13,7 +13,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.uav_by_mavlink import Autopilot
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
 from tests.browser.simulated_mission import card, opened, starts
@@ -49,6 +49,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[Flight]:
             "name": name,
             "position": at,
             "is_simulated": True,
+            "type": unlimited_type(page),
             "link": "mavlink",
             "mavlink_system_id": system,
             "allows_unsigned": True,

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
-from tests.browser.operator_map import TOO_WIDE, asks, stores_mission, wait_for_map
+from tests.browser.operator_map import TOO_WIDE, asks, stores_mission, unlimited_type, wait_for_map
 from tests.browser.pictures import HAS_PICTURES
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
@@ -41,7 +41,10 @@ def flown(visitor: Visitor, site: Site) -> str:
     """The address of the report of a mission that two UAVs have flown; flown once for all tests."""
     if site.address not in _flown:
         page = visitor.signs_in("ada")
-        uavs = [posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})["id"] for name, position in STARTS.items()]
+        uavs = [
+            posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True, "type": unlimited_type(page)})["id"]
+            for name, position in STARTS.items()
+        ]
         towers = asks(page, f"/assets?kind=tower&bbox={region.report_towers}&limit=400")["features"]
         towers = towers[:: len(towers) // 8][:8]
         body = {
@@ -148,7 +151,9 @@ def test_a_mission_that_nobody_has_flown_says_so(visitor: Visitor, picture: Pict
 def test_a_mission_with_open_targets_is_closed_and_followed_up(visitor: Visitor, site: Site, picture: Picture, start: str) -> None:
     """After an abort: each open target gets a reason, and the draft of the rest is there at once."""
     page = visitor.signs_in("ada")
-    uav = posts(page, "/uavs", {"name": f"Wigeon {start}", "position": region.west, "is_simulated": True})["id"]
+    uav = posts(page, "/uavs", {"name": f"Wigeon {start}", "position": region.west, "is_simulated": True, "type": unlimited_type(page)})[
+        "id"
+    ]
     towers = asks(page, f"/assets?kind=tower&bbox={region.report_towers}&limit=400")["features"][:2]
     body = {"name": f"West, {start}", "uavs": [{"id": uav}], "targets": [{"asset": tower["id"]} for tower in towers], "plan": True}
     key = posts(page, "/missions", body)["id"]

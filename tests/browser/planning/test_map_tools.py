@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks, look_at, targets, wait_for_map
+from tests.browser.operator_map import asks, look_at, targets, unlimited_type, wait_for_map
 from tests.browser.regions import HELIPORT, METRES_PER_DEG, region
 
 pytestmark = pytest.mark.browser
@@ -208,13 +208,15 @@ def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
 
 def test_a_uav_points_along_its_heading_and_nowhere_without_one(operator: Page) -> None:
     token = next(cookie["value"] for cookie in operator.context.cookies() if cookie["name"] == "csrftoken")
-    east = [region.empty[0] + 0.05, region.empty[1]]
+    of, east = unlimited_type(operator), [region.empty[0] + 0.05, region.empty[1]]
     for name, place, more in (
         ("Heading dart", region.empty, {"heading_deg": 90}),
         ("Heading unknown", east, {}),
         ("Heading unknown 2", east, {}),
     ):
-        answer = operator.request.post("/api/v1/uavs", data={"name": name, "position": place, **more}, headers={"X-CSRFToken": token})
+        answer = operator.request.post(
+            "/api/v1/uavs", data={"name": name, "position": place, "type": of, **more}, headers={"X-CSRFToken": token}
+        )
         assert answer.status == 201, answer.text()
     opens_at(operator, region.empty, 12)
     map_region = operator.get_by_role("region", name="Map")

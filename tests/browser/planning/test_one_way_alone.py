@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import PASSWORD, Visitor
-from tests.browser.operator_map import asks, find_pickable, look_at, place_of, targets, wait_for_map
+from tests.browser.operator_map import asks, chooses_type, find_pickable, look_at, place_of, targets, unlimited_type, wait_for_map
 from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
@@ -124,10 +124,12 @@ def test_a_mission_is_planned_and_saved_on_a_phone_alone(visitor: Visitor, pictu
 
     page.get_by_role("button", name="Panel height").tap()
     page.get_by_role("button", name="Add a UAV").tap()
+    unlimited_type(page)
     at = look_at(page, place.tower["geometry"]["coordinates"], 12)
     page.touchscreen.tap(at["x"], at["y"])
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Name").fill("Pocket plover")
+    chooses_type(page)
     dialog.get_by_role("button", name="Add").tap()
     expect(page.get_by_role("checkbox", name="Pocket plover")).to_be_checked()
     page.get_by_role("button", name="Plan", exact=True).tap()

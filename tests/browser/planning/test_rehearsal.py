@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.test_report import VIEWS, posts
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.pictures import HAS_PICTURES, THEMES
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
@@ -36,7 +36,10 @@ def planned(visitor: Visitor, site: Site) -> str:
     """A mission of two UAVs that is planned, over flat ground: its key; planned once for all tests."""
     if site.address not in _planned:
         page = visitor.signs_in("ada")
-        uavs = [posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})["id"] for name, position in STARTS.items()]
+        uavs = [
+            posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True, "type": unlimited_type(page)})["id"]
+            for name, position in STARTS.items()
+        ]
         towers = asks(page, f"/assets?kind=tower&bbox={region.short_row}&limit=100")["features"]
         body = {
             "name": "South belt, rehearsed", "uavs": [{"id": uav, "most_targets": 2} for uav in uavs],
@@ -143,7 +146,14 @@ def test_a_mission_into_14_mps_of_wind_is_refused_with_the_reason(visitor: Visit
     uav = posts(
         page,
         "/uavs",
-        {"name": "Gadwall", "position": STARTS["Wigeon"], "is_simulated": True, "cruise_speed_mps": 10.0, "max_airspeed_mps": 20.0},
+        {
+            "name": "Gadwall",
+            "position": STARTS["Wigeon"],
+            "is_simulated": True,
+            "type": unlimited_type(page),
+            "cruise_speed_mps": 10.0,
+            "max_airspeed_mps": 20.0,
+        },
     )["id"]
     tower = asks(page, f"/assets?kind=tower&bbox={region.row_west}&limit=1")["features"][0]["id"]
     body = {

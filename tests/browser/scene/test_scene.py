@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.test_report import posts
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.pictures import CANVAS_COLOURS, colours_of
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
@@ -35,7 +35,9 @@ def rehearsed(visitor: Visitor, site: Site) -> tuple[str, str]:
     """Keys of a mission with one short flight to a tower, and of its rehearsal in calm air; flown once for all tests."""
     if site.address not in _rehearsed:
         page = visitor.signs_in("ada")
-        uav = posts(page, "/uavs", {"name": "Eider", "position": region.beside_tower, "is_simulated": True})["id"]
+        uav = posts(page, "/uavs", {"name": "Eider", "position": region.beside_tower, "is_simulated": True, "type": unlimited_type(page)})[
+            "id"
+        ]
         towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=200")["features"]
         nearest = min(
             towers, key=lambda tower: sum((a - b) ** 2 for a, b in zip(tower["geometry"]["coordinates"], region.beside_tower, strict=True))

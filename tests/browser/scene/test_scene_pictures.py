@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.flying.test_report import VIEWS, flown, posts
-from tests.browser.operator_map import asks
+from tests.browser.operator_map import asks, unlimited_type
 from tests.browser.regions import region
 from tests.browser.scene.test_scene import TIMEOUT_MS, seen
 from tests.browser.test_fleet import writes
@@ -57,7 +57,10 @@ def beside(tower: dict[str, Any], east_deg: float = 0.0009, north_deg: float = 0
 
 def rehearsed(page: Page, name: str, uavs: dict[str, list[float]], targets: list[dict[str, Any]], departs_at: str, most: int) -> str:
     """The key of a mission that is planned and rehearsed as planned."""
-    ids = [posts(page, "/uavs", {"name": uav, "position": place, "is_simulated": True})["id"] for uav, place in uavs.items()]
+    ids = [
+        posts(page, "/uavs", {"name": uav, "position": place, "is_simulated": True, "type": unlimited_type(page)})["id"]
+        for uav, place in uavs.items()
+    ]
     body = {
         "name": name, "uavs": [{"id": uav, "most_targets": most} for uav in ids],
         "targets": [{"asset": target["id"]} for target in targets],

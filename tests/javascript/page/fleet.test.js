@@ -63,7 +63,8 @@ test("figures say where they come from and what is not known", () => {
   const uav = flat(feature);
   assert.equal(fromType(uav, "max_range_m", rangeText(uav.max_range_m)), "60.0\u00a0km, as its type");
   assert.equal(fromType(uav, "cruise_speed_mps", "9\u00a0m/s"), "9\u00a0m/s");
-  assert.equal(rangeText(null), "not limited");
+  assert.equal(rangeText(null), "not stated");
+  assert.equal(rangeText(null, true), "unlimited");
   assert.equal(ageText(uav), "age not known");
 });
 

@@ -6,7 +6,7 @@ from typing import Any
 from django.contrib.gis.geos import Point
 from django.utils import timezone
 
-from missions.models import CommandKind, Uav, UavCommand
+from missions.models import CommandKind, Uav, UavCommand, UavType
 from missions.services.commands.commands import claim_commands, queue_command
 from tests.missions.worlds import UAV_AT
 from workspace.models import Organisation, User
@@ -16,8 +16,15 @@ LONG_AGO = timedelta(hours=1)
 
 
 def a_uav(name: str = "Kite", organisation: Organisation | None = None, **facts: Any) -> Uav:
+    """A UAV that can be planned: without a range of its own, its type's is unlimited."""
     owner = {} if organisation is None else {"organisation": organisation}
-    return Uav.objects.create(name=name, location=Point(*UAV_AT, srid=4326), **owner, **facts)
+    own = {"end_action": "hover", "uav_type": unlimited_type(organisation), **facts}
+    return Uav.objects.create(name=name, location=Point(*UAV_AT, srid=4326), **owner, **own)
+
+
+def unlimited_type(organisation: Organisation | None = None) -> UavType:
+    owner = {} if organisation is None else {"organisation": organisation}
+    return UavType.objects.get_or_create(name="Unlimited", **owner, defaults={"range_unlimited": True})[0]
 
 
 def give(uav: Uav, kind: CommandKind, actor: User | None = None, **more: Any) -> UavCommand:

@@ -8,7 +8,7 @@ from django.test import Client
 
 from missions.models import Base, InspectionTarget, Mission
 from tests.accounts.users import a_user, client_of
-from tests.missions.api import TERN, mission_body, patch, plan_body, post
+from tests.missions.api import TERN, mission_body, patch, plan_body, post, unlimited_type
 from tests.missions.worlds import UAV_AT, World, world
 from workspace.models import Job, JobState, Role
 
@@ -88,7 +88,8 @@ def test_more_locked_targets_than_a_plan_may_have_are_refused_before_any_is_look
 
 
 def test_a_stored_uav_brings_its_sensors(here: World, client: Client) -> None:
-    uav = post(client, "uavs", {"name": "Kite", "position": list(UAV_AT), "sensor": "Lidar"}).json()["id"]
+    kite = {"name": "Kite", "position": list(UAV_AT), "sensor": "Lidar", "type": unlimited_type(client)}
+    uav = post(client, "uavs", kite).json()["id"]
     body = plan_body({"asset": here.towers[0].pk, "sensor": "lidar"})
     assert post(client, "plans", body | {"uavs": [{"id": uav}]}).json()["unassigned"] == []
     (left_out,) = post(client, "plans", body | {"uavs": [{"id": uav, "sensors": []}]}).json()["unassigned"]
@@ -247,7 +248,7 @@ def test_a_target_that_is_left_out_is_stored_with_its_reason(here: World, client
 
 def test_why_a_target_is_not_reached_names_its_wish(here: World, client: Client) -> None:
     body = plan_body({"asset": here.towers[0].pk, "sensor": "Lidar"})
-    spare = {"name": "Kite", "position": list(UAV_AT), "sensor": "LIDAR"}
+    spare = {"name": "Kite", "position": list(UAV_AT), "sensor": "LIDAR", "type": unlimited_type(client)}
     post(client, "uavs", spare)
     stated = post(client, "plans/why-target", body | {"target": 0}).json()
     assert (stated["reason"], stated["sensor"], stated["tied_to"]) == ("not_allowed", "Lidar", None)

@@ -371,7 +371,7 @@ def test_a_uav_at_a_mission_keeps_its_values_when_the_stored_one_moves(here: Wor
             "position": list(UAV_AT),
             "max_range_m": 9_000.0,
             "cruise_speed_mps": 12.0,
-            "end_action": "hover",
+            "end_action": "return",
             "most_targets": None,
             "sensors": [],
             "sorties": 1,

@@ -14,7 +14,7 @@ from missions.services import NO_SHORTFALL
 from planning.solver import solver
 from planning.solver.search import Progress
 from tests.accounts.users import a_user, client_of
-from tests.missions.api import TERN, plan_body, post
+from tests.missions.api import TERN, plan_body, post, unlimited_type
 from tests.missions.worlds import UAV_AT, World, world
 from tests.workspace.counters import forget_counts
 from workspace.jobs import job_watch
@@ -237,7 +237,8 @@ def test_uavs_of_another_organisation_cannot_be_used(here: World) -> None:
 
 
 def test_a_stored_uav_brings_its_values_and_the_request_overrides_them(here: World, client: Client) -> None:
-    uav = post(client, "uavs", {"name": "Tern 2", "position": list(UAV_AT), "max_range_m": 100.0}).json()["id"]
+    tern = {"name": "Tern 2", "position": list(UAV_AT), "max_range_m": 100.0, "type": unlimited_type(client)}
+    uav = post(client, "uavs", tern).json()["id"]
     limited = post(client, "plans", plan_body(here.towers[0]) | {"uavs": [{"id": uav}]}).json()
     free = post(client, "plans", plan_body(here.towers[0]) | {"uavs": [{"id": uav, "max_range_m": None}]}).json()
     assert (limited["routes"][0]["uav"], limited["routes"][0]["uav_id"]) == ("Tern 2", uav)

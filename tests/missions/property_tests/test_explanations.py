@@ -9,7 +9,7 @@ from inspection.models import Asset
 from missions.models import Uav
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
-from tests.missions.api import TERN, mission_body, plan_body, post
+from tests.missions.api import TERN, mission_body, plan_body, post, unlimited_type
 from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
 from workspace.models import Role
 
@@ -60,8 +60,9 @@ def test_a_line_through_a_zone_says_which_parts_can_be_flown_and_these_can(here:
 
 
 def test_a_target_out_of_range_says_what_each_uav_needs_and_who_of_the_fleet_could(here: World, client: Client) -> None:
-    spare = post(client, "uavs", {"name": "Kite", "position": list(UAV_AT), "max_range_m": 50_000.0}).json()["id"]
-    post(client, "uavs", {"name": "Wren", "position": list(UAV_AT), "max_range_m": 700.0})
+    common = {"position": list(UAV_AT), "type": unlimited_type(client)}
+    spare = post(client, "uavs", common | {"name": "Kite", "max_range_m": 50_000.0}).json()["id"]
+    post(client, "uavs", common | {"name": "Wren", "max_range_m": 700.0})
     body = plan_body(here.towers[5]) | {"uavs": [TERN | {"max_range_m": 900.0}], "return_to_start": True}
     assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "beyond_range"
     stated = why_target(client, body)
@@ -77,7 +78,8 @@ def test_a_target_out_of_range_says_what_each_uav_needs_and_who_of_the_fleet_cou
 
 
 def test_a_spare_uav_may_land_at_a_base_where_none_of_the_plan_does(here: World, client: Client) -> None:
-    post(client, "uavs", {"name": "Kite", "position": list(UAV_AT), "end_action": "base", "max_range_m": 50_000.0})
+    kite = {"name": "Kite", "position": list(UAV_AT), "end_action": "base", "max_range_m": 50_000.0, "type": unlimited_type(client)}
+    post(client, "uavs", kite)
     body = plan_body(here.towers[5]) | {"uavs": [TERN | {"max_range_m": 100.0}]}
     assert {uav["name"]: uav["is_enough"] for uav in why_target(client, body)["uavs"]} == {"Tern": False, "Kite": False}  # no base
     post(client, "bases", {"name": "North", "position": [10.012, 56.0005]})
@@ -87,7 +89,7 @@ def test_a_spare_uav_may_land_at_a_base_where_none_of_the_plan_does(here: World,
 
 
 def test_a_retired_uav_is_not_offered(here: World, client: Client) -> None:
-    post(client, "uavs", {"name": "Kite", "position": list(UAV_AT)})
+    post(client, "uavs", {"name": "Kite", "position": list(UAV_AT), "type": unlimited_type(client)})
     Uav.objects.update(state="retired")
     body = plan_body(here.towers[5]) | {"uavs": [TERN | {"max_range_m": 900.0}], "return_to_start": True}
     assert [uav["name"] for uav in why_target(client, body)["uavs"]] == ["Tern"]

@@ -45,11 +45,17 @@ export function changeDialog({ uav, submit, ...how }) {
 /** A UAV that is new in the fleet. @param {DialogHow & { submit: (typed: NewUav) => unknown }} how */
 export function newDialog({ uav, submit, ...how }) {
   const fields = createFields(uav);
-  const type = h("select", { class: "input" }, h("option", { value: "" }, t("none")));
-  const ofType = field(t("Type"), type);
+  const type = h("select", { class: "input", required: true }, h("option", { value: "" }, t("Choose a type")));
+  const noTypes = h(
+    "p",
+    { class: "caption", hidden: true },
+    t("There are no types yet."),
+    " ",
+    h("a", { href: "/uavs?tab=types" }, t("Add a type")),
+  );
+  const ofType = h("div", {}, field(t("Type"), type), noTypes);
   /** @type {UavType[]} */
   let types = [];
-  ofType.hidden = true; // until there are types to choose from
   fields.showUsual(uav.usual ?? usualOf(null));
   const { showRange } = showDialog(fields, how, {
     others: { type },
@@ -61,7 +67,7 @@ export function newDialog({ uav, submit, ...how }) {
     const chosen = types.find(({ id }) => `${id}` === type.value);
     fields.showUsual(usualOf(chosen));
     fields.showUsualFlight(chosen);
-    showRange();
+    showRange(chosen);
   });
   fields.name.select();
   void get("/bases?limit=1000")
@@ -74,7 +80,7 @@ export function newDialog({ uav, submit, ...how }) {
     (answer) => {
       types = /** @type {Answer<UavTypePage>} */ (answer).data.results;
       type.append(...types.map((row) => h("option", { value: row.id }, row.name)));
-      ofType.hidden = !types.length;
+      noTypes.hidden = types.length > 0;
     },
     () => {}, // it is added without one
   );
@@ -90,10 +96,16 @@ function showDialog(fields, { title, note, act }, { others = {}, ownHint, head, 
   const unlimited = h("p", { class: "caption", role: "status" });
   const wrong = h("p", { class: "field-error", role: "alert" });
   const dialog = h("dialog", { "aria-labelledby": "place-title" });
-  const showRange = () => {
-    unlimited.textContent = range.value || range.placeholder ? "" : t("Range not stated: it is planned as unlimited.");
+  let isLimited = "type" in others; // a new UAV without a range is incomplete, unless its type is unlimited
+  /** @param {UavType} [type] */
+  const showRange = (type) => {
+    if (type) isLimited = !type.range_unlimited;
+    const isCounted = range.value || range.placeholder || fields.battery_wh.value || fields.battery_wh.placeholder;
+    if (isCounted) unlimited.textContent = "";
+    else if (isLimited) unlimited.textContent = t("State a range or a battery: without them it cannot be planned.");
+    else unlimited.textContent = t("Unlimited range.");
   };
-  range.addEventListener("input", showRange);
+  for (const input of [range, fields.battery_wh]) input.addEventListener("input", () => showRange());
   showRange();
   const form = h(
     "form",

@@ -85,7 +85,8 @@ function showBattery(place, percent) {
 }
 
 /** Why a UAV cannot take off with any plan. @param {StandingUav} uav */
-function troubleOf({ state, isGone }) {
+function troubleOf({ state, missing, isGone }) {
   if (isGone) return t("No longer in the fleet, or retired");
-  return state === "maintenance" ? t("In maintenance") : "";
+  if (state === "maintenance") return t("In maintenance");
+  return missing?.length ? t("Incomplete: see its page") : "";
 }

@@ -207,7 +207,7 @@ function askForNew(store, actions, position) {
       base_name: "",
       max_range_m: null,
       cruise_speed_mps: null,
-      end_action: "hover",
+      end_action: "return",
     },
     act: t("Add"),
     submit: ({ cruise_speed_mps, ...body }) =>
