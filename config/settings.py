@@ -355,6 +355,7 @@ COMMAND_RULES = CommandLifetimes(
 # The MAVLink gateway: where it listens (HOST:PORT, comma-separated, empty for none), and its limits.
 GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
+GATEWAY_PUBLIC_HOST = os.environ.get("SPANWISE_GATEWAY_PUBLIC_HOST", "")  # under which UAVs reach it; empty: the site's host
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
 GATEWAY_MAX_COMMANDS = int(number("SPANWISE_GATEWAY_MAX_COMMANDS", 200))  # concurrent, above which speeds wait
 LINK_BUDGET_BYTES_S = number("SPANWISE_LINK_BUDGET_BYTES_S", 0.0)  # of telemetry by MAVLink of each UAV; 0: no limit

@@ -113,6 +113,9 @@ class CredentialSerializer(serializers.Serializer):
 
 class NewCredentialSerializer(CredentialSerializer):
     secret = serializers.CharField(help_text="the token, or the 32 bytes of the key in hexadecimal; it cannot be read again")
+    secret_qr = serializers.ListField(
+        child=serializers.CharField(), help_text="its QR code without quiet zone: a row of modules each, 1 is dark"
+    )
 
 
 class CredentialPageSerializer(serializers.Serializer):

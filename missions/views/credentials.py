@@ -11,6 +11,7 @@ from rest_framework.views import APIView
 from accounts.login import PASSWORD_NEEDED, require_reauthentication
 from missions import services
 from missions.models import CredentialKind
+from missions.qr_code import qr_rows
 from missions.selectors import fleet
 from missions.serializers.fleet import (
     CredentialInputSerializer,
@@ -70,7 +71,8 @@ class UavCredentials(APIView):
                 uav=uav, actor=request.user, kind=CredentialKind(values["kind"]), insist_reason=_insist_reason(request, values)
             )
         made.credential.refresh_from_db()
-        return Response(credential_json(made.credential) | {"secret": made.secret}, status=201, headers={"Cache-Control": "no-store"})
+        once = {"secret": made.secret, "secret_qr": qr_rows(made.secret)}
+        return Response(credential_json(made.credential) | once, status=201, headers={"Cache-Control": "no-store"})
 
 
 class UavCredentialDetail(APIView):

@@ -1754,6 +1754,13 @@ export interface components {
          * @enum {string}
          */
         GapOfEnum: "all_plans" | "without_timed_zones";
+        GatewayAddress: {
+            protocol: components["schemas"]["ProtocolEnum"];
+            host: string;
+            port: number;
+            /** @description reachable from the gateway's own machine alone */
+            is_local: boolean;
+        };
         /** @description A GeoJSON geometry, WGS84, longitude first. */
         Geometry: {
             type: components["schemas"]["GeometryType"];
@@ -3336,6 +3343,8 @@ export interface components {
             revoked_at: string | null;
             /** @description the token, or the 32 bytes of the key in hexadecimal; it cannot be read again */
             secret: string;
+            /** @description its QR code without quiet zone: a row of modules each, 1 is dark */
+            secret_qr: string[];
         };
         /** @description The only response that contains the link itself. */
         NewInvitation: {
@@ -4339,6 +4348,12 @@ export interface components {
          * @enum {string}
          */
         ProposalState: "reading" | "refused" | "ready" | "applying" | "applied" | "discarded";
+        /**
+         * @description * `udp` - udp
+         *     * `tcp` - tcp
+         * @enum {string}
+         */
+        ProtocolEnum: "udp" | "tcp";
         /** @description A file's source, as far as the file itself does not state it. */
         ProvenanceInputRequest: {
             source_address?: string;
@@ -6749,6 +6764,10 @@ export interface components {
              *     * `other-length` - other-length
              */
             loaded_doubt: components["schemas"]["LoadedDoubtEnum"] | components["schemas"]["BlankEnum"];
+            /** @description base address of the HTTP link */
+            server: string;
+            /** @description where vehicles that speak MAVLink connect; empty: no gateway */
+            gateway: components["schemas"]["GatewayAddress"][];
             /**
              * Format: date-time
              * @description to tell an age by, whatever the reader's clock says
@@ -8046,6 +8065,7 @@ export type FlownTotals = components['schemas']['FlownTotals'];
 export type FollowUpRequest = components['schemas']['FollowUpRequest'];
 export type FormEnum = components['schemas']['FormEnum'];
 export type GapOfEnum = components['schemas']['GapOfEnum'];
+export type GatewayAddress = components['schemas']['GatewayAddress'];
 export type Geometry = components['schemas']['Geometry'];
 export type GeometryCheckKindEnum = components['schemas']['GeometryCheckKindEnum'];
 export type GeometryCheckRequest = components['schemas']['GeometryCheckRequest'];
@@ -8226,6 +8246,7 @@ export type ProposalFault = components['schemas']['ProposalFault'];
 export type ProposalJob = components['schemas']['ProposalJob'];
 export type ProposalPage = components['schemas']['ProposalPage'];
 export type ProposalState = components['schemas']['ProposalState'];
+export type ProtocolEnum = components['schemas']['ProtocolEnum'];
 export type ProvenanceInputRequest = components['schemas']['ProvenanceInputRequest'];
 export type Quality = components['schemas']['Quality'];
 export type Railway = components['schemas']['Railway'];

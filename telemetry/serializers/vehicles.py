@@ -67,6 +67,13 @@ def vehicle_json(vehicle: UnknownVehicle) -> dict[str, Any]:
     }
 
 
+class GatewayAddressSerializer(serializers.Serializer):
+    protocol = serializers.ChoiceField(choices=["udp", "tcp"])
+    host = serializers.CharField()
+    port = serializers.IntegerField()
+    is_local = serializers.BooleanField(help_text="reachable from the gateway's own machine alone")
+
+
 class UavConnectionSerializer(serializers.Serializer):
     """State of a UAV's link; null or empty if unknown."""
 
@@ -92,6 +99,8 @@ class UavConnectionSerializer(serializers.Serializer):
     loaded_doubt = serializers.ChoiceField(
         choices=[(doubt.value, doubt.value) for doubt in Doubt], allow_blank=True, help_text="why it may hold something else by now"
     )
+    server = serializers.CharField(help_text="base address of the HTTP link")
+    gateway = GatewayAddressSerializer(many=True, help_text="where vehicles that speak MAVLink connect; empty: no gateway")
     server_time = serializers.DateTimeField(help_text="to tell an age by, whatever the reader's clock says")
 
 

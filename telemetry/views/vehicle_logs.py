@@ -1,6 +1,8 @@
 """Links of UAVs, status texts of their autopilots, and flight logs as files."""
 
+from dataclasses import asdict
 from typing import Any
+from urllib.parse import urlsplit
 
 from django.http import FileResponse, Http404
 from django.shortcuts import get_object_or_404
@@ -11,8 +13,10 @@ from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from accounts.invitations import public_address
 from missions.views.uavs import uav_or_404
 from telemetry.models import FlightLog
+from telemetry.selectors.gateway_addresses import gateway_addresses
 from telemetry.selectors.vehicles import LogFileMissing, connection_of, file_of, flight_logs_of, texts_of
 from telemetry.serializers.log import FlightLogPageSerializer, VehicleTextPageSerializer, VehicleTextSerializer
 from telemetry.serializers.vehicles import UavConnectionSerializer, connection_json
@@ -32,7 +36,10 @@ class UavConnection(APIView):
     )
     def get(self, request: SignedInRequest, uav_id: int) -> Response:
         uav = uav_or_404(request.user, uav_id)
-        return Response(connection_json(uav, connection_of(uav), timezone.now()))
+        server = public_address(request)
+        site_host = urlsplit(server).hostname or ""
+        facts = {"server": server, "gateway": [asdict(address) for address in gateway_addresses(site_host)]}
+        return Response(connection_json(uav, connection_of(uav), timezone.now()) | facts)
 
 
 class VehicleTexts(APIView):

@@ -10,6 +10,7 @@ import { LINKS } from "./words.js";
 /** @import { UavConnection } from "../api_types.d.ts" */
 
 const ASKED_EVERY_MS = 5_000;
+const WAITING_MS = 2_000; // before the first message, for which somebody stands beside the UAV
 const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
 
 /**
@@ -80,19 +81,28 @@ function drawing(connection) {
 }
 
 /**
- * Draw into `place` until it is removed from the page.
+ * Draw into `place` until it is removed from the page, and call `onAnswer` with each answer.
  *
  * @param {HTMLElement} place
  * @param {{ id: number }} uav
+ * @param {(connection: UavConnection) => void} [onAnswer]
  */
-export async function mountConnection(place, uav) {
+export async function mountConnection(place, uav, onAnswer = () => {}) {
   const draw = async () => {
     const { data } = /** @type {Answer<UavConnection>} */ (await get(`/uavs/${uav.id}/connection`));
     place.replaceChildren(...drawing(data));
+    onAnswer(data);
+    return data;
   };
-  await draw();
-  const clock = setInterval(() => {
-    if (!place.isConnected) clearInterval(clock);
-    else if (document.visibilityState === "visible") draw().catch(() => {}); // the last message stays, with its age
-  }, ASKED_EVERY_MS);
+  /** @param {UavConnection | null} last */
+  const again = (last) =>
+    setTimeout(
+      async () => {
+        if (!place.isConnected) return;
+        const isSeen = document.visibilityState === "visible";
+        again(isSeen ? await draw().catch(() => last) : last); // the last message stays, with its age
+      },
+      last?.last_message_at ? ASKED_EVERY_MS : WAITING_MS,
+    );
+  again(await draw());
 }

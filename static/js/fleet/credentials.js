@@ -6,12 +6,15 @@ import { find, h, icon } from "../dom.js";
 import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
+import { qrCode } from "./qr_code.js";
 import { CREDENTIALS } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Credential, CredentialKind, CredentialPage, NewCredential } from "../api_types.d.ts" */
 /** @import { Child } from "../dom.js" */
 /** @import { Uav } from "./types.d.ts" */
+
+/** @typedef {{ kind: CredentialKind, secret: string, qr: string[] }} Shown a secret that was just made */
 
 const KINDS = /** @type {CredentialKind[]} */ (Object.keys(CREDENTIALS));
 const SECRET_WORDS = {
@@ -49,13 +52,14 @@ async function copy(text) {
   }
 }
 
-/** @param {{ kind: CredentialKind, secret: string }} shown @param {() => unknown} onAway */
-const secretBox = ({ kind, secret }, onAway) =>
+/** @param {Shown} shown @param {() => unknown} onAway */
+const secretBox = ({ kind, secret, qr }, onAway) =>
   h(
     "div",
     { class: "secret" },
     h("p", {}, SECRET_WORDS[kind]),
     h("code", {}, secret),
+    qrCode(qr, t("QR code of it")),
     h(
       "div",
       { class: "acts" },
@@ -184,7 +188,7 @@ async function credentialsInForce(path) {
  */
 export async function mountCredentials(place, uav, { canPlan, isAdministrator, onChange }) {
   const path = `/uavs/${uav.id}/credentials`;
-  /** @type {{ kind: CredentialKind, secret: string } | null} */
+  /** @type {Shown | null} */
   let shown = null;
   /** @type {CredentialKind | null} */
   let asking = null; // which kind is about to be revoked
@@ -220,7 +224,7 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
     const send = () => post(path, reason ? { kind, insist_reason: reason } : { kind });
     /** @param {Answer<NewCredential>} answer */
     const show = async ({ data }) => {
-      shown = { kind, secret: data.secret };
+      shown = { kind, secret: data.secret, qr: data.secret_qr };
       await draw();
       find(place, ".secret button", HTMLElement).focus();
     };

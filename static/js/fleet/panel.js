@@ -5,6 +5,7 @@ import { byId, h, icon, setChildren } from "../dom.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
+import { mountConnect } from "./connect.js";
 import { mountConnection } from "./connection.js";
 import { mountCredentials } from "./credentials.js";
 import { mountTypeAirframe } from "./type_airframe.js";
@@ -83,13 +84,19 @@ async function fillMissions(list, none, address) {
 /** What there is below the facts of a UAV; it fills itself. @param {Uav} uav @param {How} how @returns {Child} */
 function partsOfUav(uav, { canPlan, isAdministrator, acts }) {
   const connection = h("div", { class: "connection" });
+  const connect = h("div", {});
   const credentials = h("ul", { class: "plain-list" });
   const missions = h("ul", { class: "plain-list" });
   const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
-  mountConnection(connection, uav).catch(acts.failed);
+  /** @type {ReturnType<typeof mountConnect> | null} */
+  let showState = null;
+  mountConnection(connection, uav, (answer) => {
+    showState ??= mountConnect(connect, uav, answer);
+    showState(answer);
+  }).catch(acts.failed);
   mountCredentials(credentials, uav, { canPlan, isAdministrator, onChange: acts.refresh }).catch(acts.failed);
   fillMissions(missions, none, `/uavs/${uav.id}/missions`).catch(acts.failed);
-  return [h("h3", {}, t("Link")), connection, credentials, h("h3", {}, t("Missions")), missions, none];
+  return [h("h3", {}, t("Link")), connection, connect, credentials, h("h3", {}, t("Missions")), missions, none];
 }
 
 /** @param {FleetType} type @param {How} how @returns {Child} */

@@ -98,7 +98,7 @@ def test_wind_that_its_airframe_flies_in_and_the_uav_does_not_fails(mission: Mis
 
 
 def test_a_battery_that_is_too_small_fails_with_its_reason(here: World, person: User) -> None:
-    uav_type = UavType.objects.create(organisation=person.organisation, name="Small", mass_kg=1.545)
+    uav_type = UavType.objects.create(organisation=person.organisation, name="Small", mass_kg=1.545, range_unlimited=True)
     mission = planned(person, fleet(uav_type=uav_type), [here.towers[0]])
     mission.mission_uavs.update(performance={"battery_wh": 10.5})
     rehearsal = rehearsed(mission, person, "calm")

@@ -148,7 +148,7 @@ def test_administrators_alone_ask_for_rehearsals_before_approval(mission: Missio
 
 
 def test_an_airframe_is_chosen_for_a_type(person: User) -> None:
-    uav_type = UavType.objects.create(organisation=person.organisation, name="Heavy", mass_kg=3.9, battery_wh=270.0)
+    uav_type = UavType.objects.create(organisation=person.organisation, name="Heavy", mass_kg=3.9, battery_wh=270.0, range_unlimited=True)
     client, address = client_of(person), f"uav-types/{uav_type.pk}/airframe"
     assert client.get(f"/api/v1/{address}").json() == {"airframe": None, "flown": "inspector"}
     assert put(client, address, {"airframe": "iris"}).json() == {"airframe": "iris", "flown": "iris"}

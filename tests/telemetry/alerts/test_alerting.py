@@ -184,7 +184,7 @@ def test_a_zone_that_is_saved_around_a_flying_uav_is_told(uav, approval):
 
 
 def test_limits_of_the_mission_go_before_those_of_the_type(uav, approval):
-    uav_type = UavType.objects.create(name="Quad", alert_limits={"link_late_s": 30.0, "link_lost_s": 60.0})
+    uav_type = UavType.objects.create(name="Quad", range_unlimited=True, alert_limits={"link_late_s": 30.0, "link_lost_s": 60.0})
     Uav.objects.filter(pk=uav.pk).update(uav_type=uav_type)
     states = watching(uav, approval)
     poll_alerts(watched=[watched_uav(uav, approval)], now=at(25), detector_states=states)

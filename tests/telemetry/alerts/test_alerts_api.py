@@ -109,7 +109,7 @@ def test_viewers_read_and_others_organisations_see_nothing(uav):
 
 
 def test_limits_are_stated_for_a_type_and_checked(operator):
-    uav_type = UavType.objects.create(name="Quad")
+    uav_type = UavType.objects.create(name="Quad", range_unlimited=True)
     address = f"/api/v1/uav-types/{uav_type.pk}/alert-limits"
     answer = operator.put(address, {"off_route_m": 40, "wind_mps": None}, content_type="application/json").json()
     assert answer["stated"] == {"off_route_m": 40.0}
