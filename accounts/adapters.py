@@ -18,6 +18,7 @@ from accounts.second_factors import has_second_factor
 from accounts.single_sign_on import local_sign_in_is_on, local_sign_in_off
 from workspace.models import SignInOutcome, User
 from workspace.sessions.browser_sessions import note_session
+from workspace.sessions.preferences import visitor_ip
 from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, mark_of, remember, try_to_sign_in
 
 
@@ -47,7 +48,8 @@ class AccountAdapter(DefaultAccountAdapter):
     def post_login(self, request: HttpRequest, user: User, **facts: Any) -> HttpResponse:
         """Write the log, begin the session's times, and remember the browser as a trusted device."""
         response: HttpResponse = super().post_login(request, user, **facts)
-        note_session(request.session, user, is_act=True, user_agent=request.headers.get("User-Agent", ""))
+        agent = request.headers.get("User-Agent", "")
+        note_session(request.session, user, is_act=True, user_agent=agent, address=visitor_ip(request))
         record_sign_in(request, SignInOutcome.SIGNED_IN, user=user)
         remember(request, response, user.username)
         return response

@@ -1,6 +1,7 @@
 """API shapes of accounts, users, invitations and logins."""
 
 from datetime import datetime
+from ipaddress import ip_address
 from typing import Any, ClassVar
 
 from allauth.mfa.models import Authenticator
@@ -8,6 +9,7 @@ from django.conf import settings
 from django.contrib.auth.password_validation import validate_password
 from django.utils import timezone
 from django.utils.translation import gettext as _
+from drf_spectacular.utils import extend_schema_field
 
 from accounts.invitations import MAX_DAYS, state_of
 from accounts.invitations import InvitationState as State
@@ -20,6 +22,7 @@ from workspace.models import (
     ApiToken,
     BrowserSession,
     Invitation,
+    Organisation,
     Role,
     SignInEntry,
     SignInOutcome,
@@ -33,6 +36,13 @@ from workspace.sessions.preferences import TIME_ZONES
 
 InvitationState = [state.value for state in State]
 MAX_TOKEN_DAYS = 365
+
+
+def known_time_zone(name: str) -> str:
+    """Return the name of a zone, or empty. Raises ValidationError."""
+    if name and name not in TIME_ZONES:
+        raise serializers.ValidationError(_("There is no time zone of this name."))
+    return name
 
 
 class AccountSerializer(serializers.ModelSerializer):
@@ -56,14 +66,14 @@ class AccountChangeSerializer(serializers.Serializer):
     last_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
     theme = serializers.ChoiceField(choices=Theme.choices, required=False)
     units = serializers.ChoiceField(choices=Units.choices, required=False)
-    time_zone = serializers.CharField(max_length=64, allow_blank=True, required=False, help_text="IANA name; empty: the browser's")
+    time_zone = serializers.CharField(
+        max_length=64, allow_blank=True, required=False, help_text="IANA name; empty: the organisation's, else the browser's"
+    )
     language = serializers.CharField(max_length=10, allow_blank=True, required=False, help_text="code; empty: the browser's")
     single_keys = serializers.BooleanField(required=False)
 
     def validate_time_zone(self, value: str) -> str:
-        if value and value not in TIME_ZONES:
-            raise serializers.ValidationError(_("There is no time zone of this name."))
-        return value
+        return known_time_zone(value)
 
     def validate_language(self, value: str) -> str:
         if value and value not in dict(settings.LANGUAGES):
@@ -191,14 +201,22 @@ class BrowserSessionSerializer(serializers.ModelSerializer):
 
     ends_at = serializers.SerializerMethodField()
     is_this_one = serializers.SerializerMethodField(help_text="the one that asks")
+    place = serializers.SerializerMethodField(help_text="where the address lies; null: unknown")
 
     class Meta:
         model = BrowserSession
-        fields = ["id", "user_agent", "began_at", "present_at", "ends_at", "is_this_one"]
+        fields = ["id", "user_agent", "address", "place", "began_at", "present_at", "ends_at", "is_this_one"]
         read_only_fields = fields
 
     def get_ends_at(self, session: BrowserSession) -> datetime:
         return session_ends_at(session)
+
+    @extend_schema_field(serializers.ChoiceField(choices=["this-machine", "private-network", "internet"], allow_null=True))
+    def get_place(self, session: BrowserSession) -> str | None:
+        if session.address is None:
+            return None
+        address = ip_address(session.address)
+        return "this-machine" if address.is_loopback else "private-network" if address.is_private else "internet"
 
     def get_is_this_one(self, session: BrowserSession) -> bool:
         return bool(session.pk == self.context.get("own"))
@@ -211,6 +229,19 @@ class BrowserSessionListSerializer(serializers.Serializer):
 class SecondFactorRuleSerializer(serializers.Serializer):
     required: Declared = serializers.BooleanField(help_text="of everybody in the organisation, from their next sign-in on")
     is_of_the_installation = serializers.BooleanField(read_only=True, help_text="required whatever the organisation says")
+
+
+class OrganisationSerializer(serializers.ModelSerializer):
+    """One's organisation."""
+
+    class Meta:
+        model = Organisation
+        fields = ["name", "time_zone", "revision"]
+        read_only_fields = ["revision"]
+        extra_kwargs: ClassVar[dict[str, Any]] = {"name": {"required": False}, "time_zone": {"required": False}}
+
+    def validate_time_zone(self, value: str) -> str:
+        return known_time_zone(value)
 
 
 class UserSerializer(serializers.ModelSerializer):

@@ -2,18 +2,19 @@
 
 import json
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from datetime import datetime, timedelta
 from typing import Any
 
 from django.db import IntegrityError, transaction
 from django.db.models import Count, F, Max, Q, QuerySet
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from accounts.users import save_user
 from workspace.api_tokens import create_api_token
 from workspace.audit import record_account_event, record_change
-from workspace.models import ApiToken, Role, User
+from workspace.models import ApiToken, Organisation, Role, User
 
 MAX_TOKENS = 50  # of one user, valid at the same time
 CHANGEABLE_BY_ADMINISTRATORS = ("first_name", "last_name", "email", "role", "is_active")
@@ -27,6 +28,14 @@ class ChangedMeanwhile(Exception):
         self.person = person
 
 
+class OrganisationChanged(Exception):
+    """Raised when the organisation was changed since; nothing was stored. `organisation` is the current row."""
+
+    def __init__(self, organisation: Organisation) -> None:
+        super().__init__(_("Another administrator has changed the organisation meanwhile."))
+        self.organisation = organisation
+
+
 class TooManyTokens(Exception):
     """Raised at the limit of valid tokens, each of which could be stolen: old ones must be revoked first."""
 
@@ -37,6 +46,31 @@ def change_account(*, user: User, **values: Any) -> User:
         setattr(user, name, value)
     user.save(update_fields=list(values))
     return user
+
+
+def change_organisation(
+    *, organisation: Organisation, actor: User, values: Mapping[str, Any], expected_revision: int | None = None
+) -> Organisation:
+    """Change name and time zone, with an entry in the history. Raises OrganisationChanged."""
+    with transaction.atomic():
+        held = Organisation.objects.select_for_update().get(pk=organisation.pk)
+        if expected_revision is not None and held.revision != expected_revision:
+            raise OrganisationChanged(held)
+        before = {name: getattr(held, name) for name in values}
+        for name, value in values.items():
+            setattr(held, name, value)
+        held.revision += 1
+        held.save(update_fields=[*values, "revision"])
+        record_change(
+            organisation=held,
+            actor=actor,
+            action="change",
+            subject_type="organisation",
+            subject_id=held.pk,
+            before=before,
+            after=dict(values),
+        )
+    return held
 
 
 def change_password(*, user: User, password: str, ends_tokens: bool = False) -> None:

@@ -22,6 +22,10 @@ class Organisation(models.Model):
     """A team with its own UAVs and missions; assets, zones and the graph are shared by all organisations."""
 
     name = models.CharField(max_length=200, unique=True)
+    time_zone = models.CharField(
+        max_length=64, blank=True, default="", db_default="", help_text="IANA name, for users who chose none; empty: the browser's"
+    )
+    revision = models.PositiveIntegerField(default=1, db_default=1, editable=False, help_text="counts the changes; the ETag")
     requires_second_factor = models.BooleanField(default=False, db_default=False, help_text="of everybody, from the next sign-in on")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
 
@@ -81,7 +85,7 @@ class User(AbstractUser):
     units = models.CharField(
         max_length=10, choices=Units.choices, default=Units.METRIC, help_text="what is shown; what is stored is metric"
     )
-    time_zone = models.CharField(max_length=64, blank=True, help_text="IANA name; empty: the browser's")
+    time_zone = models.CharField(max_length=64, blank=True, help_text="IANA name; empty: the organisation's, else the browser's")
     language = models.CharField(max_length=10, blank=True, default="", help_text="code; empty: the browser's")
     single_keys = models.BooleanField(default=True, help_text="shortcuts of one key on the pages")
     last_seen_at = models.DateTimeField(null=True, blank=True, editable=False, help_text="to the minute")
@@ -107,6 +111,11 @@ class User(AbstractUser):
     def own_language(self) -> str:
         """Return the chosen language; empty for the browser's, also where the chosen one is no longer in locale/."""
         return self.language if self.language in dict(settings.LANGUAGES) else ""
+
+    @property
+    def shown_time_zone(self) -> str:
+        """Return the zone in which pages show times: the user's, else the organisation's; empty for the browser's."""
+        return self.time_zone or self.organisation.time_zone
 
     @property
     def display_name(self) -> str:

@@ -43,6 +43,7 @@ class BrowserSession(models.Model):
     )
     user = models.ForeignKey("workspace.User", on_delete=models.CASCADE, related_name="browser_sessions")
     user_agent = models.CharField(max_length=200, blank=True)
+    address = models.GenericIPAddressField(null=True, blank=True, help_text="of the last request that was noted")
     began_at = models.DateTimeField()
     acted_at = models.DateTimeField(help_text="when a page was opened or something was sent, to the minute")
     present_at = models.DateTimeField(help_text="when an open page was last heard of, to the minute")

@@ -25,10 +25,12 @@ from workspace.models import SCOPES_OF_ROLE, User
 from workspace.pages import SignedInPage
 from workspace.sessions.preferences import TIME_ZONES
 
+NAMED_ZONES = sorted(zone for zone in TIME_ZONES if "/" in zone or zone == "UTC")
+
 
 class AccountPage(SignedInPage):
     template_name = "account.html"
-    extra_context = {"section": "account", "time_zones": sorted(zone for zone in TIME_ZONES if "/" in zone or zone == "UTC")}
+    extra_context = {"section": "account", "time_zones": NAMED_ZONES}
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
@@ -75,7 +77,7 @@ class AdministrationPage(UserPassesTestMixin, SignedInPage):
     """Users, invitations and the sign-in log, for administrators."""
 
     template_name = "administration.html"
-    extra_context = {"section": "administration"}
+    extra_context = {"section": "administration", "time_zones": NAMED_ZONES}
 
     def test_func(self) -> bool:
         return bool(self.request.user.is_authenticated and self.request.user.is_superuser)

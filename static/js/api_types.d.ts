@@ -38,7 +38,7 @@ export interface components {
              *     * `imperial` - Feet, miles, miles per hour
              */
             units?: components["schemas"]["Units"];
-            /** @description IANA name; empty: the browser's */
+            /** @description IANA name; empty: the organisation's, else the browser's */
             time_zone?: string;
             /** @description code; empty: the browser's */
             language?: string;
@@ -750,6 +750,10 @@ export interface components {
         BrowserSession: {
             readonly id: number;
             readonly user_agent: string;
+            /** @description of the last request that was noted */
+            readonly address: string | null;
+            /** @description where the address lies; null: unknown */
+            readonly place: (components["schemas"]["PlaceEnum"] | components["schemas"]["NullEnum"]) | null;
             /** Format: date-time */
             readonly began_at: string;
             /**
@@ -3449,6 +3453,14 @@ export interface components {
             target: number;
             reason: string;
         };
+        /** @description One's organisation. */
+        Organisation: {
+            name?: string;
+            /** @description IANA name, for users who chose none; empty: the browser's */
+            time_zone?: string;
+            /** @description counts the changes; the ETag */
+            readonly revision: number;
+        };
         Origin: {
             position: number[];
             /** Format: double */
@@ -3504,7 +3516,7 @@ export interface components {
             last_name?: string;
             theme?: components["schemas"]["Theme"];
             units?: components["schemas"]["Units"];
-            /** @description IANA name; empty: the browser's */
+            /** @description IANA name; empty: the organisation's, else the browser's */
             time_zone?: string;
             /** @description code; empty: the browser's */
             language?: string;
@@ -3591,6 +3603,12 @@ export interface components {
              * @description with `plan`: a done job of POST /plans; its plan is taken if it was asked for just this
              */
             plan_of?: string | null;
+        };
+        /** @description One's organisation. */
+        PatchedOrganisationRequest: {
+            name?: string;
+            /** @description IANA name, for users who chose none; empty: the browser's */
+            time_zone?: string;
         };
         PatchedParametersRequest: {
             parameters?: {
@@ -3818,6 +3836,8 @@ export interface components {
             /** @description lon, lat */
             centre: number[];
         };
+        /** @enum {string} */
+        PlaceEnum: "this-machine" | "private-network" | "internet";
         /** @description Quality of a plan: a bound that no plan can be better than, and this plan's gap above it. */
         Plan: {
             /**
@@ -8190,6 +8210,7 @@ export type ObjectiveEnum = components['schemas']['ObjectiveEnum'];
 export type Offer = components['schemas']['Offer'];
 export type OfferState = components['schemas']['OfferState'];
 export type OpenTargetReasonRequest = components['schemas']['OpenTargetReasonRequest'];
+export type Organisation = components['schemas']['Organisation'];
 export type Origin = components['schemas']['Origin'];
 export type OriginEnum = components['schemas']['OriginEnum'];
 export type ParametersRequest = components['schemas']['ParametersRequest'];
@@ -8202,6 +8223,7 @@ export type PatchedAccountChangeRequest = components['schemas']['PatchedAccountC
 export type PatchedAssetInputRequest = components['schemas']['PatchedAssetInputRequest'];
 export type PatchedBaseRequest = components['schemas']['PatchedBaseRequest'];
 export type PatchedMissionPatchRequest = components['schemas']['PatchedMissionPatchRequest'];
+export type PatchedOrganisationRequest = components['schemas']['PatchedOrganisationRequest'];
 export type PatchedParametersRequest = components['schemas']['PatchedParametersRequest'];
 export type PatchedSelectionInputRequest = components['schemas']['PatchedSelectionInputRequest'];
 export type PatchedServiceAccountChangeRequest = components['schemas']['PatchedServiceAccountChangeRequest'];
@@ -8215,6 +8237,7 @@ export type PatchedUserChangeRequest = components['schemas']['PatchedUserChangeR
 export type PatchedVehicleChangeRequest = components['schemas']['PatchedVehicleChangeRequest'];
 export type PatchedZoneInputRequest = components['schemas']['PatchedZoneInputRequest'];
 export type PickedAsset = components['schemas']['PickedAsset'];
+export type PlaceEnum = components['schemas']['PlaceEnum'];
 export type Plan = components['schemas']['Plan'];
 export type PlanInputRequest = components['schemas']['PlanInputRequest'];
 export type PlanLock = components['schemas']['PlanLock'];

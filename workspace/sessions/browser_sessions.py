@@ -49,23 +49,25 @@ def seconds_left(store: Any) -> int:
     return max(0, round(left))
 
 
-def note_session(store: Any, user: User, *, is_act: bool, user_agent: str = "") -> None:
-    """Record, to the minute, that the store's session is in use. An unknown one begins now."""
+def note_session(store: Any, user: User, *, is_act: bool, user_agent: str = "", address: str = "") -> None:
+    """Record, to the minute, that the store's session is in use, and from which address. An unknown one begins now."""
     now, row = timezone.now(), store.in_use
     if row is None:
         if store.session_key is not None:
-            store.in_use = _begin(store.session_key, user, user_agent, now)
+            store.in_use = _begin(store.session_key, user, user_agent, address, now)
         return
-    values = {"present_at": now} | ({"acted_at": now} if is_act else {})
+    values: dict[str, Any] = {"present_at": now} | ({"acted_at": now} if is_act else {}) | ({"address": address} if address else {})
     if now - (row.acted_at if is_act else row.present_at) >= NOTED_EVERY:
         BrowserSession.objects.filter(pk=row.pk).update(**values)
         for name, value in values.items():
             setattr(row, name, value)
 
 
-def _begin(session_key: str, user: User, user_agent: str, now: datetime) -> BrowserSession | None:
+def _begin(session_key: str, user: User, user_agent: str, address: str, now: datetime) -> BrowserSession | None:
     agent = "".join(character for character in user_agent if character.isprintable())[:200]
-    row = BrowserSession(session_id=session_key, user=user, user_agent=agent, began_at=now, acted_at=now, present_at=now)
+    row = BrowserSession(
+        session_id=session_key, user=user, user_agent=agent, address=address or None, began_at=now, acted_at=now, present_at=now
+    )
     BrowserSession.objects.bulk_create([row], ignore_conflicts=True)  # a page's first requests may be concurrent
     return BrowserSession.objects.filter(session_id=session_key).first()
 

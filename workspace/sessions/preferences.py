@@ -29,7 +29,7 @@ class PreferencesMiddleware:
     def __call__(self, request: HttpRequest) -> HttpResponse:
         user = _signed_in_user(request)
         own_language = user.own_language if user else ""
-        zone = user.time_zone if user and not request.path.startswith("/api/") else ""
+        zone = user.shown_time_zone if user and not request.path.startswith("/api/") else ""
         with (
             translation.override(own_language or translation.get_language_from_request(request)),
             timezone.override(zone) if zone in TIME_ZONES else nullcontext(),
@@ -49,12 +49,22 @@ def _signed_in_user(request: HttpRequest) -> User | None:
     if is_read and request.path == ASKS_HOW_LONG:
         return request.user
     is_act = not is_read or not request.path.startswith("/api/")  # pages' own reads do not count
-    note_session(request.session, request.user, is_act=is_act, user_agent=request.headers.get("User-Agent", ""))
+    agent, address = request.headers.get("User-Agent", ""), visitor_ip(request)
+    note_session(request.session, request.user, is_act=is_act, user_agent=agent, address=address)
     now = timezone.now()
     if request.user.last_seen_at is None or now - request.user.last_seen_at >= SEEN_EVERY:
         User.objects.filter(pk=request.user.pk).update(last_seen_at=now)
         request.user.last_seen_at = now
     return request.user
+
+
+def visitor_ip(request: HttpRequest) -> str:
+    """Return the client's address; empty where none is known, as over a unix socket."""
+    address = visitor_address(request.META.get("REMOTE_ADDR", ""), request.headers.get("X-Forwarded-For", ""))
+    try:
+        return str(ipaddress.ip_address(address))
+    except ValueError:
+        return ""
 
 
 def visitor_address(peer: str, forwarded: str) -> str:

@@ -66,11 +66,14 @@ byId("units-sample").textContent = t("Such as {length}, {height} above ground, {
   height: heightText(SAMPLE.height_m),
   speed: speedText(SAMPLE.speed_mps),
 });
-const browserZone = new Intl.DateTimeFormat().resolvedOptions().timeZone;
-byId("browser-zone").textContent = t("As the browser ({zone})", { zone: browserZone });
+const ofOrganisation = byId("browser-zone").dataset.zone;
+const usualZone = ofOrganisation || new Intl.DateTimeFormat().resolvedOptions().timeZone;
+byId("browser-zone").textContent = ofOrganisation
+  ? t("As the organisation ({zone})", { zone: ofOrganisation })
+  : t("As the browser ({zone})", { zone: usualZone });
 
 function showZone() {
-  const timeZone = byId("time_zone", HTMLSelectElement).value || browserZone;
+  const timeZone = byId("time_zone", HTMLSelectElement).value || usualZone;
   const clock = new Date().toLocaleTimeString(locale, {
     timeZone,
     hour: "2-digit",

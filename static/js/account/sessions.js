@@ -12,6 +12,16 @@ import { browserName } from "./sign_in_row.js";
 /** @import { BrowserSession, BrowserSessionList } from "../api_types.d.ts" */
 /** @import { Reporter } from "../page/problem.js" */
 
+const PLACES = {
+  "this-machine": t("the server itself"),
+  "private-network": t("private network"),
+  internet: t("internet"),
+};
+
+/** "203.0.113.7 (internet)". @param {Pick<BrowserSession, "address" | "place">} session */
+export const whereText = ({ address, place }) =>
+  address ? `${address} (${PLACES[place ?? "internet"]})` : t("address not known");
+
 /** @param {Reporter} reporter */
 export function mountSessions({ notify, settle }) {
   /** @param {BrowserSession} session */
@@ -43,7 +53,7 @@ export function mountSessions({ notify, settle }) {
         "div",
         { class: "what" },
         h("strong", { title: session.user_agent }, name),
-        h("span", { class: "caption", title: exactText(session.began_at) }, times),
+        h("span", { class: "caption", title: exactText(session.began_at) }, [whereText(session), times].join(" · ")),
       ),
       act,
     );

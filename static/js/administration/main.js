@@ -5,6 +5,7 @@ import { startChrome } from "../page/chrome.js";
 import { notify, settle } from "../page/problem.js";
 import { t } from "../text.js";
 import { mountInvitations } from "./invitations.js";
+import { mountOrganisation } from "./organisation.js";
 import { mountRules } from "./rules.js";
 import { mountServiceAccounts } from "./service_accounts.js";
 import { mountSignIns } from "./sign_ins.js";
@@ -13,13 +14,14 @@ import { mountUsers } from "./users.js";
 /** @typedef {"users" | "invitations" | "service-accounts" | "sign-ins" | "rules"} Tab */
 
 /** @type {Tab[]} */
-const TABS = ["users", "invitations", "service-accounts", "sign-ins", "rules"];
+const TABS = ["users", "invitations", "service-accounts", "sign-ins", "organisation", "rules"];
 
 const lists = {
   users: mountUsers({ notify, settle }),
   invitations: mountInvitations({ notify, settle, show: () => showTab("invitations") }),
   "service-accounts": mountServiceAccounts({ notify, settle }),
   "sign-ins": mountSignIns({ notify }),
+  organisation: mountOrganisation({ notify, settle }),
   rules: mountRules({ notify, settle }),
 };
 

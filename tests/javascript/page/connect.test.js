@@ -28,8 +28,8 @@ test("an autopilot has the name of its firmware, with the version that its users
 
 test("a link waits for the first message, then names who is there", () => {
   assert.equal(stateText(silent), "Waiting for the first message…");
-  const heard = { ...silent, last_message_at: "2026-01-01T00:00:00Z", autopilot: "ardupilot", firmware: "4.6.1" };
-  assert.equal(stateText({ ...heard, vehicle_type: "quadrotor" }), "Received: ArduCopter 4.6");
+  const received = { ...silent, last_message_at: "2026-01-01T00:00:00Z", autopilot: "ardupilot", firmware: "4.6.1" };
+  assert.equal(stateText({ ...received, vehicle_type: "quadrotor" }), "Received: ArduCopter 4.6");
 });
 
 test("each program has three steps, with this gateway's address and this UAV's id", () => {

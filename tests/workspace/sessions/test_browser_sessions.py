@@ -164,7 +164,9 @@ def test_somebody_sees_their_own_sessions_alone_and_which_one_this_is() -> None:
     found = listed(here)
     assert {session["user_agent"] for session in found} == {FIREFOX, ""}
     assert [session["user_agent"] for session in found if session["is_this_one"]] == [""]
-    assert set(found[0]) == {"id", "user_agent", "began_at", "present_at", "ends_at", "is_this_one"}, "and no key of a session"
+    assert set(found[0]) == {
+        "id", "user_agent", "address", "place", "began_at", "present_at", "ends_at", "is_this_one",
+    }, "and no key of a session"  # fmt: skip
     row = user.browser_sessions.get(user_agent=FIREFOX)
     assert session_ends_at(row) == row.present_at + hours(2)
 
