@@ -3,7 +3,15 @@
 from django.urls import path
 
 from missions import views
-from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionClose, MissionDispatch, MissionRevoke
+from missions.views.approvals import (
+    MissionAbort,
+    MissionApproval,
+    MissionApprove,
+    MissionClose,
+    MissionDispatch,
+    MissionNearestZone,
+    MissionRevoke,
+)
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
@@ -38,6 +46,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/look", RouteWaypointsLook.as_view(), name="api-route-waypoints-look"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/undo", RouteWaypointsUndo.as_view(), name="api-route-waypoints-undo"),
     path("missions/<uuid:mission_id>/approval", MissionApproval.as_view(), name="api-mission-approval"),
+    path("missions/<uuid:mission_id>/nearest-zone", MissionNearestZone.as_view(), name="api-mission-nearest-zone"),
     path("missions/<uuid:mission_id>/approve", MissionApprove.as_view(), name="api-mission-approve"),
     path("missions/<uuid:mission_id>/revoke", MissionRevoke.as_view(), name="api-mission-revoke"),
     path("missions/<uuid:mission_id>/dispatch", MissionDispatch.as_view(), name="api-mission-dispatch"),

@@ -17,6 +17,7 @@ from missions.selectors.planning_rules import planning_rules
 from planning.checks.zones import MetZone
 from planning.checks.zones import zones_met as checked_zones_met
 from planning.clearance.nearby_zones import zones_near
+from planning.clearance.nearest_zone import NearestZone, nearest_zone
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, breaches
 from planning.request import EndAction
 
@@ -81,6 +82,12 @@ def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
 def zones_met(routes: Sequence[FlownRoute], table: ZoneTable | None = None) -> list[list[MetZone]]:
     """Return for each route the zones that it meets, current ones or those of the table; a route without times counts at any time."""
     return checked_zones_met(routes, zone_table() if table is None else table, zone_margins())
+
+
+def nearest_zone_of_mission(mission: Mission) -> NearestZone | None:
+    """Return the zone that the plan comes nearest to. mission: with its routes and waypoints loaded."""
+    routes = [route for route in mission.routes.all() if route.geometry is not None]
+    return nearest_zone([flown_route(route, departure_s(mission)) for route in routes], zone_table())
 
 
 def departure_s(mission: Mission) -> float | None:

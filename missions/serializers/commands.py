@@ -267,6 +267,16 @@ class SentSerializer(serializers.Serializer):
     commands = CommandSerializer(many=True)
 
 
+class NearestZoneSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+    metres = serializers.FloatField(help_text="across the ground; 0 inside, above or below the zone")
+
+
+class NearestZoneAnswerSerializer(serializers.Serializer):
+    nearest = NearestZoneSerializer(allow_null=True, help_text="null: none within 5 km")
+
+
 def approval_json(approval: Approval | None) -> dict[str, Any] | None:
     if approval is None:
         return None

@@ -63,12 +63,18 @@ def mission_json(mission: Mission) -> dict[str, Any]:
 
 
 def mission_summary(
-    mission: ListedMission, revision: int, drawing: dict[str, Any], bases: frozenset[tuple[float, ...]], *, has_other_uavs: bool
+    mission: ListedMission,
+    revision: int,
+    drawing: dict[str, Any],
+    bases: frozenset[tuple[float, ...]],
+    *,
+    has_other_uavs: bool,
+    has_failed_rehearsal: bool,
 ) -> dict[str, Any]:
     """Return a line of the list, as loaded by list_selectors.mission_rows.
 
     `revision` is the current dataset version, `drawing` the surroundings, `bases` comes from stale_selectors.bases_landed_at,
-    `has_other_uavs` from uav_change_selectors.
+    `has_other_uavs` from uav_change_selectors, `has_failed_rehearsal` from hooks.rehearsals.
     """
     return {
         "id": str(mission.pk),
@@ -90,6 +96,7 @@ def mission_summary(
         "duration_s": mission.duration_s,
         "is_stale": is_stale(mission, revision, has_lost_base=has_lost_base(mission, bases), has_other_uavs=has_other_uavs),
         "has_other_uavs": has_other_uavs,
+        "has_failed_rehearsal": has_failed_rehearsal,
         "sketch": sketch(mission),
         "places": drawing["places"],
         "lines": drawing["lines"],

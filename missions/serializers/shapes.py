@@ -400,6 +400,7 @@ class MissionSummarySerializer(serializers.Serializer):
     duration_s = serializers.FloatField(allow_null=True, help_text="from the departure until the last UAV has ended its route")
     is_stale = serializers.BooleanField()
     has_other_uavs = serializers.BooleanField(help_text="it is stale because a UAV is no longer as the plan has it")
+    has_failed_rehearsal = serializers.BooleanField(help_text="the newest rehearsal of its present plan failed")
     sketch = serializers.ListField(child=serializers.ListField(child=PositionField()), help_text="the routes, simplified")
     places = serializers.ListField(child=PositionField(), help_text="of the targets, the first 60")
     lines = serializers.ListField(

@@ -12,6 +12,7 @@ from rest_framework.views import APIView
 from missions.models import UavCommand
 from missions.selectors import missions
 from missions.selectors.commands import commands_of_organisation
+from missions.selectors.zones import nearest_zone_of_mission
 from missions.serializers import commands as shapes
 from missions.serializers.shapes import MissionSerializer
 from missions.services.approval.approval import approve_mission, revoke_approval
@@ -60,6 +61,19 @@ class MissionApproval(APIView):
         return Response(
             {**(shapes.approval_json(approval) or {}), "document": approval.document}, headers={"ETag": f'"{approval.content_sha256}"'}
         )
+
+
+class MissionNearestZone(APIView):
+    @extend_schema(
+        operation_id="get_nearest_zone",
+        summary="The no-fly zone that a planned mission comes nearest to",
+        description="Of the zones in force while it is flown, at heights that it has, within 5 km; without a departure of all zones.",
+        responses=shapes.NearestZoneAnswerSerializer,
+    )
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        nearest = nearest_zone_of_mission(mission_or_404(request.user, mission_id))
+        found = None if nearest is None else {"id": nearest.zone, "name": nearest.name, "metres": round(nearest.metres, 1)}
+        return Response({"nearest": found})
 
 
 class MissionApprove(APIView):

@@ -15,6 +15,7 @@ from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
 from missions import services
+from missions.hooks.rehearsals import failed_rehearsals
 from missions.models import Mission, MissionState
 from missions.selectors import missions
 from missions.selectors.mission_list import (
@@ -191,9 +192,18 @@ class MissionList(_PlansWhenAsked):
         by_state = deleted if asked.is_deleted else there
         drawings, ground = surroundings(page.rows), ground_revision()
         bases, others = bases_landed_at(page.rows, organisation.pk), missions_with_other_uavs(page.rows)
+        failed = failed_rehearsals(page.rows)
         return Response({
             "results": [
-                mission_summary(mission, ground, drawings[mission.pk], bases, has_other_uavs=mission.pk in others) for mission in page.rows
+                mission_summary(
+                    mission,
+                    ground,
+                    drawings[mission.pk],
+                    bases,
+                    has_other_uavs=mission.pk in others,
+                    has_failed_rehearsal=mission.pk in failed,
+                )
+                for mission in page.rows
             ],
             "next": page.next,
             "total": sum(number for state, number in by_state.items() if not asked.states or state in asked.states),

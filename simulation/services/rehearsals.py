@@ -330,14 +330,25 @@ def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
     return []
 
 
-def _failed_rehearsal(mission: Mission) -> list[RefusalReason]:
-    if not Rehearsal.objects.filter(mission=mission.pk, level=AssessmentLevel.FAIL).exists():
-        return []
+def failed_rehearsals(missions: Sequence[Mission]) -> set[UUID]:
+    """Return the keys of the missions whose present plan failed its newest rehearsal."""
+    failed = Rehearsal.objects.filter(mission__in=[mission.pk for mission in missions], level=AssessmentLevel.FAIL)
+    known = set(failed.order_by().values_list("mission", flat=True).distinct())
+    asked = (mission_of_organisation(mission.organisation, mission.pk) for mission in missions if mission.pk in known)
+    return {mission.pk for mission in asked if _has_failed(mission)}
+
+
+def _has_failed(mission: Mission) -> bool:
+    """Return whether the newest rehearsal of the present plan failed. mission: as loaded by mission_of_organisation."""
     try:
         newest = newest_finished(mission.pk, plan_to_fly(mission).content_sha256)
     except Refused:  # it can be flown, but not rehearsed any more
-        return []
-    if newest is None or newest.level != AssessmentLevel.FAIL:
+        return False
+    return newest is not None and newest.level == AssessmentLevel.FAIL
+
+
+def _failed_rehearsal(mission: Mission) -> list[RefusalReason]:
+    if not Rehearsal.objects.filter(mission=mission.pk, level=AssessmentLevel.FAIL).exists() or not _has_failed(mission):
         return []
     words = _("The rehearsal of this plan failed. Change the plan, or say why it is approved nevertheless.")
     return [RefusalReason(ACKNOWLEDGE_FAILED_REHEARSAL, words)]

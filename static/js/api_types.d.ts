@@ -3145,6 +3145,8 @@ export interface components {
             is_stale: boolean;
             /** @description it is stale because a UAV is no longer as the plan has it */
             has_other_uavs: boolean;
+            /** @description the newest rehearsal of its present plan failed */
+            has_failed_rehearsal: boolean;
             /** @description the routes, simplified */
             sketch: number[][][];
             /** @description of the targets, the first 60 */
@@ -3329,6 +3331,19 @@ export interface components {
              *     ]
              */
             position: number[];
+        };
+        NearestZone: {
+            id: number;
+            name: string;
+            /**
+             * Format: double
+             * @description across the ground; 0 inside, above or below the zone
+             */
+            metres: number;
+        };
+        NearestZoneAnswer: {
+            /** @description null: none within 5 km */
+            nearest: components["schemas"]["NearestZone"] | null;
         };
         NewCredential: {
             id: number;
@@ -8199,6 +8214,8 @@ export type ModelFeature = components['schemas']['ModelFeature'];
 export type ModelProperties = components['schemas']['ModelProperties'];
 export type NearAsset = components['schemas']['NearAsset'];
 export type Nearest = components['schemas']['Nearest'];
+export type NearestZone = components['schemas']['NearestZone'];
+export type NearestZoneAnswer = components['schemas']['NearestZoneAnswer'];
 export type NewCredential = components['schemas']['NewCredential'];
 export type NewInvitation = components['schemas']['NewInvitation'];
 export type NewToken = components['schemas']['NewToken'];

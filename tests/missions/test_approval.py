@@ -34,11 +34,12 @@ from missions.services.commands.commands import note_applied, note_failed
 from missions.services.commands.refused import Refused
 from planning.clearance.lost_link import LostLink
 from planning.request import LostLinkRequest
+from tests.accounts.users import a_user, client_of
 from tests.missions import worlds
 from tests.missions.commands.outbox import claim, fence, now
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
 from tests.missions.worlds import World, world
-from workspace.models import User
+from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
 
@@ -416,3 +417,20 @@ def test_points_are_put_in_where_wished_and_are_part_of_what_is_approved(here: W
     assert approval.document["longest_leg_m"] == 50.0
     assert leg_warnings(load, {"MIS_DIST_WPS": 50.0}, None) == ()
     assert leg_warnings(plain, {"MIS_DIST_WPS": 50.0}, None) != ()
+
+
+def test_the_briefing_names_the_nearest_zone_that_the_flight_can_meet(here: World, person: User, tmp_path: Path) -> None:
+    """A zone 111 m (0.001 degrees) south of the UAV's start; a nearer one begins far above the flight."""
+    mission = planned(person, fleet(), [here.towers[0]])
+    address = f"/api/v1/missions/{mission.pk}/nearest-zone"
+    client = client_of(person)
+    start = mission.mission_uavs.get().start.coords
+    assert client.get(address).json() == {"nearest": None}
+    near = worlds.zone_around((start[0], start[1] - 0.002), half_deg=0.001, name="Heliport")
+    high = worlds.zone_around((start[0], start[1] - 0.001), half_deg=0.0005, name="Airway")
+    NoFlyZone.objects.filter(pk=high.pk).update(lower_limit_m=600.0, lower_reference="AGL")
+    worlds.rebuild()
+    nearest = client.get(address).json()["nearest"]
+    assert (nearest["id"], nearest["name"]) == (near.pk, "Heliport")
+    assert nearest["metres"] == pytest.approx(111.3, abs=0.5)
+    assert client_of(a_user(Role.OPERATOR, Organisation.objects.create(name="Other"))).get(address).status_code == 404

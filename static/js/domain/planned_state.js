@@ -2,6 +2,9 @@
 
 import { t } from "../text.js";
 
+/** A chip of its own, beside the state: the newest rehearsal of the present plan failed. */
+export const REHEARSAL_FAILED = t("Rehearsal failed");
+
 /**
  * The chip of a mission whose state is "planned".
  *

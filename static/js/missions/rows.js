@@ -2,7 +2,7 @@
 
 import { find, h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";
-import { plannedChip } from "../domain/planned_state.js";
+import { plannedChip, REHEARSAL_FAILED } from "../domain/planned_state.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
@@ -120,7 +120,7 @@ export function missionRow(mission, { canPlan, acts }) {
     canPlan && choiceCell(mission, acts),
     h("td", { class: "drawing" }, sketch(mission)),
     name,
-    h("td", { class: "state" }, stateChip(mission)),
+    h("td", { class: "state" }, stateChips(mission)),
     targetsCell(mission),
     uavsCell(mission),
     h("td", { class: "number distance" }, lengthText(mission.total_length_m)),
@@ -257,9 +257,14 @@ const quickButton = (mission, label, image, act) =>
     icon(image),
   );
 
-/** @param {Pick<MissionSummary, "state" | "target_count" | "unassigned_count">} mission */
-function stateChip({ state, target_count, unassigned_count }) {
-  if (state !== "planned") return h("span", { class: `chip ${state}` }, STATES[state] ?? state);
-  const { className, words } = plannedChip(target_count, unassigned_count);
-  return h("span", { class: className }, words);
+/** @param {Pick<MissionSummary, "state" | "target_count" | "unassigned_count" | "has_failed_rehearsal">} mission */
+function stateChips({ state, target_count, unassigned_count, has_failed_rehearsal }) {
+  const { className, words } =
+    state === "planned"
+      ? plannedChip(target_count, unassigned_count)
+      : { className: `chip ${state}`, words: STATES[state] ?? state };
+  return [
+    h("span", { class: className }, words),
+    has_failed_rehearsal && [" ", h("span", { class: "chip failed" }, REHEARSAL_FAILED)],
+  ];
 }

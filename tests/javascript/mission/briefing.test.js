@@ -73,3 +73,11 @@ test("a plan that was never rehearsed says so, and one that has changed since", 
     "None of this plan: it has changed since",
   );
 });
+
+test("the nearest zone stands with its name and metres, and nothing where it could not be read", () => {
+  const plan = { departs_at: null, total_length_m: 1, unassigned: [], routes: [route("Kite")] };
+  const zoneOf = (nearest) => briefingOf({ plan }, [], nearest).find(({ term }) => term === "Nearest zone")?.words;
+  assert.equal(zoneOf({ id: 1, name: "Elmsgard Heliport", metres: 152.3 }), "Elmsgard Heliport, 152\u00a0m");
+  assert.equal(zoneOf(null), "None within 5 km");
+  assert.equal(zoneOf(undefined), undefined);
+});

@@ -121,6 +121,21 @@ def test_what_was_rehearsed_is_out_of_date_once_the_plan_is_another_one(mission:
     assert client.get(f"/api/v1/{path(mission)}/{rehearsal.pk}/track").json()["routes"][0]["planned"] == []
 
 
+def test_the_list_marks_a_mission_whose_present_plan_failed_its_rehearsal(mission: Mission, person: User) -> None:
+    client = client_of(person)
+
+    def is_marked() -> bool:
+        (row,) = client.get("/api/v1/missions").json()["results"]
+        return row["has_failed_rehearsal"]
+
+    assert not is_marked()
+    mission.mission_uavs.update(performance={"battery_wh": 11.1})
+    assert rehearsed(mission, person, "calm").level == "fail"
+    assert is_marked()
+    Mission.objects.filter(pk=mission.pk).update(departs_at="2031-05-01T10:00:00Z")  # another plan
+    assert not is_marked()
+
+
 def test_one_that_waits_is_cancelled_at_once(mission: Mission, person: User) -> None:
     rehearsal = asked(mission, person)
     answer = post(client_of(person), path(mission, f"/{rehearsal.pk}/cancel"))

@@ -5,7 +5,7 @@ import { durationText, exactText, heightText, lengthText, percentText } from "..
 import { levelWords } from "../rehearsal/rehearsal.js";
 import { landing_s } from "../route_times.js";
 
-/** @import { Mission, Plan, Rehearsal, Route } from "../../api_types.d.ts" */
+/** @import { Mission, NearestZone, Plan, Rehearsal, Route } from "../../api_types.d.ts" */
 
 /** @typedef {{ term: string, words: string, isBad?: boolean }} BriefingFact */
 
@@ -33,9 +33,10 @@ export function needsReason({ uavs, simulates }, rehearsals) {
 /**
  * @param {Pick<Mission, "plan">} mission
  * @param {Rehearsal[]} rehearsals
+ * @param {NearestZone | null} [nearest] of the plan; without it nothing is said of zones, null: none is near
  * @returns {BriefingFact[]}
  */
-export function briefingOf({ plan }, rehearsals) {
+export function briefingOf({ plan }, rehearsals, nearest) {
   const facts = [rehearsalFact(rehearsals)];
   const routes = plan?.routes.filter(({ geometry }) => geometry) ?? [];
   if (!plan || !routes.length) return facts;
@@ -50,6 +51,7 @@ export function briefingOf({ plan }, rehearsals) {
         height: heightText(Math.max(...routes.flatMap(({ waypoints }) => waypoints.map((one) => one.altitude_agl_m)))),
       }),
     },
+    ...zoneFact(nearest),
     ...batteryFact(routes),
     ...leftOut(plan),
   ];
@@ -84,6 +86,13 @@ function timeFacts(routes) {
         ]
       : []),
   ];
+}
+
+/** @param {NearestZone | null | undefined} nearest @returns {BriefingFact[]} */
+function zoneFact(nearest) {
+  if (nearest === undefined) return [];
+  const words = nearest ? `${nearest.name}, ${lengthText(nearest.metres)}` : t("None within 5 km");
+  return [{ term: t("Nearest zone"), words }];
 }
 
 /** @param {Route[]} routes @returns {BriefingFact[]} */

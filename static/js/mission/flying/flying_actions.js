@@ -10,7 +10,7 @@ import { briefingOf, needsReason } from "./briefing.js";
 import { createFlightReading } from "./flight_reading.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { Mission, Rehearsal, RehearsalPage } from "../../api_types.d.ts" */
+/** @import { Mission, NearestZone, NearestZoneAnswer, Rehearsal, RehearsalPage } from "../../api_types.d.ts" */
 /** @import { BriefingFact } from "./briefing.js" */
 /** @import { Flyer } from "../../domain/flying.js" */
 /** @import { MissionContext, MissionPageData, MissionPageState, MissionStore } from "../types.d.ts" */
@@ -32,8 +32,8 @@ export function createFlying(store, { failed, page }) {
 
   return {
     async approve() {
-      const [rehearsals] = await Promise.all([rehearsalsOf(store), readReturns()]);
-      await approve(acting, rehearsals);
+      const [rehearsals, nearest] = await Promise.all([rehearsalsOf(store), nearestZoneOf(store), readReturns()]);
+      await approve(acting, rehearsals, nearest);
     },
     revoke: () => revoke(acting),
     watch,
@@ -100,8 +100,19 @@ async function rehearsalsOf({ state: { mission, rehearsal } }) {
   }
 }
 
-/** @param {Acting} acting @param {Rehearsal[]} rehearsals */
-async function approve(acting, rehearsals) {
+/** The zone that the plan comes nearest to; undefined where it cannot be read now. @param {MissionStore} store */
+async function nearestZoneOf({ state: { mission } }) {
+  try {
+    const { data } = /** @type {Answer<NearestZoneAnswer>} */ (await get(`/missions/${mission?.id}/nearest-zone`));
+    return data.nearest;
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    return undefined;
+  }
+}
+
+/** @param {Acting} acting @param {Rehearsal[]} rehearsals @param {NearestZone | null | undefined} nearest */
+async function approve(acting, rehearsals, nearest) {
   const { store } = acting;
   const { mission } = store.state;
   if (!mission) return;
@@ -111,7 +122,7 @@ async function approve(acting, rehearsals) {
   const asked = await confirmAct({
     title: t("Approve “{name}”?", { name: mission.name }),
     lines: [
-      briefingList(briefingOf(mission, rehearsals)),
+      briefingList(briefingOf(mission, rehearsals, nearest)),
       tn(flyers.length, "{count} UAV flies: {names}.", "{count} UAVs fly: {names}.", { names: uavsWords(flyers) }),
       simulated.length > 0 && t("Simulated, no real aircraft: {names}.", { names: uavsWords(simulated) }),
       t("Approval locks the mission. Only the approved mission can be uploaded to UAVs. The approval can be revoked."),

@@ -4,7 +4,7 @@ import { openAlertLimits } from "../../alert_limits/dialog.js";
 import { ApiError } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
 import { groundCauses } from "../../domain/flying.js";
-import { plannedChip } from "../../domain/planned_state.js";
+import { plannedChip, REHEARSAL_FAILED } from "../../domain/planned_state.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
 import { markSimulated } from "../../simulated.js";
@@ -12,6 +12,7 @@ import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";
 import { standingUavs } from "../fleet.js";
 import { departureText } from "../flight_options.js";
+import { rehearsalOfPlan } from "../flying/briefing.js";
 import { factsOf } from "../head_facts.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 import { unreachedCards } from "../unreached/cards.js";
@@ -93,7 +94,7 @@ export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showP
     toggleMenu(more, () => menuOf(t("This mission"), itemsFor(store.state.mission, actions, { canPlan, canCopy }))),
   );
 
-  store.listen(["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis", "arrival"], (state) => {
+  store.listen(["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis", "arrival", "rehearsal"], (state) => {
     if (name.value !== state.name) name.value = state.name;
     drawHead(state, canPlan);
   });
@@ -163,8 +164,17 @@ function drawHead(state, canPlan) {
   chip.textContent = name === "planned" ? planned.words : STATE_WORDS[name];
   const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
   markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
+  drawRehearsalChip(state);
   chip.hidden = !canPlan && !mission; // only the map: there is no content for a draft
   byId("mission-facts").textContent = factsOf(state, canPlan).join(" · ");
+}
+
+/** Beside the state: the present plan failed its newest rehearsal. @param {MissionPageState} state */
+function drawRehearsalChip(state) {
+  const chip = byId("mission-rehearsal");
+  const isOfPlan = state.planIsStored && isPlanCurrent(state);
+  chip.hidden = !isOfPlan || rehearsalOfPlan(state.rehearsal.list ?? [])?.level !== "fail";
+  chip.textContent = chip.hidden ? "" : REHEARSAL_FAILED;
 }
 
 /** @param {string} level @param {string} image @param {string} title @param {string} text @param {WayOut[]} [acts] */
