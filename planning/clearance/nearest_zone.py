@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
 from inspection.geodesy import distance_m
@@ -47,7 +48,7 @@ def _window(route: FlownRoute) -> tuple[float, float] | None:
     return None if route.departs_s is None or route.ends_s is None else (route.departs_s, route.ends_s)
 
 
-def _metres(route: FlownRoute, polygon: shapely.Geometry) -> float:
+def _metres(route: FlownRoute, polygon: BaseGeometry) -> float:
     """Geodesic metres between the nearest places, which are looked for in a plane around the zone."""
     frame = LocalFrame.around(polygon.centroid.x, polygon.centroid.y)
     flat = frame.to_metres(route.position)

@@ -8,6 +8,7 @@ from django.utils.translation import gettext_noop
 
 from missions.models import Mission
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
+from simulation.serializers.places import WaypointPlaces, waypoint_places
 from simulation.serializers.words import render_finding
 from simulation.services.fleet import CHOSEN
 from workspace.jobs.serializers import JobSerializer
@@ -82,11 +83,13 @@ def rehearsal_json(rehearsal: Rehearsal, *, content_sha256: str | None, ground_r
 
 
 def rehearsal_detail_json(rehearsal: Rehearsal, mission: Mission, **known: Any) -> dict[str, Any]:
+    """Return a rehearsal with its assessments. Places are named as long as the plan is the one that was flown."""
+    places = waypoint_places(mission) if known["content_sha256"] == rehearsal.content_sha256 else {}
     names = {uav["uav"]: uav["name"] for uav in rehearsal.uavs}
     labels = {target.sequence: target.label for target in mission.targets.all()}
     return {
         **rehearsal_json(rehearsal, **known),
-        "runs": [{**_run(run, rehearsal), "assessment": _assessment(run, names, labels)} for run in rehearsal.runs.all()],
+        "runs": [{**_run(run, rehearsal), "assessment": _assessment(run, names, labels, places)} for run in rehearsal.runs.all()],
         "limits": [
             {"name": name, **limit, "source": _(limit["source"]), "words": _(LIMITS[name]) if name in LIMITS else name}
             for name, limit in rehearsal.limits.items()
@@ -151,10 +154,10 @@ def _run(run: RehearsalRun, rehearsal: Rehearsal) -> dict[str, Any]:
     }
 
 
-def _assessment(run: RehearsalRun, names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any] | None:
+def _assessment(run: RehearsalRun, names: Mapping[int, str], labels: Mapping[int, str], places: WaypointPlaces) -> dict[str, Any] | None:
     if run.assessment is None:
         return None
-    findings = [render_finding(finding, names, labels) for finding in run.assessment["findings"]]
+    findings = [render_finding(finding, names, labels, places) for finding in run.assessment["findings"]]
     return {
         **run.assessment,
         "findings": findings,

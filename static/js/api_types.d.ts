@@ -1558,6 +1558,13 @@ export interface components {
             reason: string;
             /** @description the reason after what it is about */
             message: string;
+            /** @description near which it is, by its place in the route; null: none */
+            waypoint: number | null;
+            /**
+             * Format: double
+             * @description of the battery that are missing at the end of a flight
+             */
+            short_percent: number | null;
         };
         FlightEnergy: {
             flight: number;

@@ -136,6 +136,9 @@ const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage })
   isFrozen: page.isFrozen,
   isStage,
   seeInSpace: () => void scene.open(),
+  actions,
+  canPlan: page.canPlan,
+  showPlaces,
 });
 flying.watch();
 mountSavedState(store, page.canPlan);

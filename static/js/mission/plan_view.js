@@ -46,9 +46,7 @@ export const otherObjective = (objective) => (objective === "makespan" ? "total"
  * @param {ShownPlan | null} plan
  */
 export const isWithoutCapacity = (plan) =>
-  plan !== null &&
-  plan.result.routes.some(({ geometry }) => geometry) &&
-  (plan.result.total_energy_wh ?? null) === null;
+  Boolean(plan?.result.routes.some(({ geometry }) => geometry)) && (plan?.result.total_energy_wh ?? null) === null;
 
 /**
  * Routes with their place in the mission: [{ sequence, letter, name, route, targets }].

@@ -351,4 +351,4 @@ def test_a_route_that_begins_in_the_air_says_that_its_rehearsal_took_off(mission
     assert reported.level == "warnings"
     (finding,) = reported.runs.get().assessment["findings"]
     assert (finding["level"], finding["code"]) == ("warnings", "begun-in-air")
-    assert "took off by itself first" in reason_of(finding, {})
+    assert "took off by itself first" in reason_of(finding, {}, {})

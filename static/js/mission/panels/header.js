@@ -94,10 +94,13 @@ export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showP
     toggleMenu(more, () => menuOf(t("This mission"), itemsFor(store.state.mission, actions, { canPlan, canCopy }))),
   );
 
-  store.listen(["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis", "arrival", "rehearsal"], (state) => {
-    if (name.value !== state.name) name.value = state.name;
-    drawHead(state, canPlan);
-  });
+  store.listen(
+    ["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis", "arrival", "rehearsal"],
+    (state) => {
+      if (name.value !== state.name) name.value = state.name;
+      drawHead(state, canPlan);
+    },
+  );
 
   /** @type {NoticeContext} */
   const context = {

@@ -21,18 +21,31 @@ import { curvesOf, rulesUpTo } from "./rehearsal.js";
  * @property {number} height_px
  * @property {number} longest_s
  * @property {number} place of the UAV in the mission
+ * @property {number} width_px
  */
 
 const [TOP_PX, BOTTOM_PX, LEFT_PX] = [8, 14, 44];
-const WIDTH_PX = 344; // of the panel; the drawing is scaled to it
+const PANEL_PX = 344; // of the panel; the drawing is scaled to it
 
 /** @param {ChartOptions} options */
-function chart({ words, flown, planned, limit = null, highest = null, unit, text, height_px, longest_s, place }) {
+function chart({
+  words,
+  flown,
+  planned,
+  limit = null,
+  highest = null,
+  unit,
+  text,
+  height_px,
+  longest_s,
+  place,
+  width_px,
+}) {
   const values = [...flown, ...planned].flat().map(({ value }) => value);
   const top = highest ?? Math.max(unit, ...values) * 1.05;
   const bottom = Math.min(0, ...values);
   /** @param {number} at_s */
-  const x = (at_s) => LEFT_PX + (at_s / longest_s) * (WIDTH_PX - LEFT_PX - 2);
+  const x = (at_s) => LEFT_PX + (at_s / longest_s) * (width_px - LEFT_PX - 2);
   /** @param {number} value */
   const y = (value) => TOP_PX + ((top - value) / (top - bottom)) * (height_px - TOP_PX - BOTTOM_PX);
   /** @param {Line} points @param {string} name */
@@ -50,22 +63,22 @@ function chart({ words, flown, planned, limit = null, highest = null, unit, text
       {
         role: "img",
         "aria-label": words,
-        viewBox: `0 0 ${WIDTH_PX} ${height_px}`,
+        viewBox: `0 0 ${width_px} ${height_px}`,
         class: `route-${routeNumber(place)}`,
       },
       [0, ...rulesUpTo(top / unit).map((rule) => rule * unit)].map((rule) => [
-        svg("line", { class: "rule", x1: LEFT_PX, x2: WIDTH_PX, y1: y(rule), y2: y(rule) }),
+        svg("line", { class: "rule", x1: LEFT_PX, x2: width_px, y1: y(rule), y2: y(rule) }),
         svg("text", { class: "tick", x: LEFT_PX - 6, y: y(rule) + 4 }, text(rule)),
       ]),
-      limit !== null && svg("line", { class: "limit", x1: LEFT_PX, x2: WIDTH_PX, y1: y(limit), y2: y(limit) }),
+      limit !== null && svg("line", { class: "limit", x1: LEFT_PX, x2: width_px, y1: y(limit), y2: y(limit) }),
       planned.map((points) => line(points, "planned")),
       flown.map((points) => line(points, "flown")),
     ),
   );
 }
 
-/** route: of the track; reserve_percent: of its plan. @param {RouteTrack} route @param {number} reserve_percent */
-export function drawCharts(route, reserve_percent) {
+/** route: of the track; reserve_percent: of its plan. @param {RouteTrack} route @param {number} reserve_percent @param {number} [width_px] */
+export function drawCharts(route, reserve_percent, width_px = PANEL_PX) {
   const { flown, planned } = curvesOf(route);
   const longest_s = Math.max(1, ...[...flown.height, ...planned.height].flat().map(({ at_s }) => at_s));
   const place = route.uav;
@@ -81,6 +94,7 @@ export function drawCharts(route, reserve_percent) {
       height_px: 104,
       longest_s,
       place,
+      width_px,
     }),
     chart({
       words: t("Battery by time"),
@@ -93,6 +107,7 @@ export function drawCharts(route, reserve_percent) {
       height_px: 84,
       longest_s,
       place,
+      width_px,
     }),
     h("p", { class: "rehearsal-axis" }, h("span", {}, t("departure")), h("span", {}, durationText(longest_s))),
     h(

@@ -6,6 +6,8 @@ import { t } from "../../../text.js";
 import { exactHeightText, heightText, numberText, percentText, speedText, whenText } from "../../../units.js";
 import { figuresOf, LEVELS, levelWords, nearestOther, sentenceOf } from "../../rehearsal/rehearsal.js";
 import { drawCharts } from "../../rehearsal/rehearsal_charts.js";
+import { createRehearsalDock } from "./dock.js";
+import { failuresList, verdictTable } from "./verdict.js";
 
 /**
  * @import { RehearsalConditions, RehearsalDetail, RehearsalRunWithAssessment, RehearsalTrack, RehearsedRoute, RehearsedTarget,
@@ -15,18 +17,29 @@ import { drawCharts } from "../../rehearsal/rehearsal_charts.js";
 /** @import { MissionStore, RehearsalState } from "../../types.d.ts" */
 /** @import { Rehearsing } from "./rehearsal.js" */
 
-/** @typedef {{ canRehearse: boolean, seeInSpace: () => unknown }} AssessmentHow */
+/** @import { VerdictHow } from "./verdict.js" */
+
+/** @typedef {Omit<VerdictHow, "store"> & { canRehearse: boolean, isStage: boolean, seeInSpace: () => unknown }} AssessmentHow */
 
 /** @param {MissionStore} store @param {Rehearsing} rehearsing @param {AssessmentHow} how */
-export function createAssessment(store, rehearsing, { canRehearse, seeInSpace }) {
+export function createAssessment(store, rehearsing, { canRehearse, isStage, seeInSpace, ...how }) {
   const place = byId("rehearsal-assessment");
+  const dock = isStage ? createRehearsalDock(store, { choose: open }) : null;
   /** @type {number | null} */
   let chosenRoute = null;
+
+  /** Open a route that was chosen elsewhere. @param {number} uav */
+  function open(uav) {
+    for (const details of /** @type {NodeListOf<HTMLDetailsElement>} */ (place.querySelectorAll(".rehearsal-route")))
+      if (details.dataset.uav === `${uav}`) details.open = true;
+    choose(uav);
+  }
 
   /** Only one route is open. @param {number} uav */
   function choose(uav) {
     if (chosenRoute === uav) return;
     chosenRoute = uav;
+    dock?.draw(uav);
     for (const details of /** @type {NodeListOf<HTMLDetailsElement>} */ (place.querySelectorAll(".rehearsal-route")))
       if (!details.classList.contains(`route-${routeNumber(uav)}`)) details.open = false;
   }
@@ -67,7 +80,8 @@ export function createAssessment(store, rehearsing, { canRehearse, seeInSpace })
         detail.created_by && ` · ${detail.created_by}`,
       ),
       ageNotice(detail),
-      detail.runs.length > 1 && runButtons(detail, number, (sequence) => void rehearsing.chooseRun(sequence)),
+      verdictTable(detail, number, (sequence) => void rehearsing.chooseRun(sequence)),
+      run?.assessment && failuresList(detail, number, { ...how, store }),
       run?.is_reused && reusedNote(run, canRehearse && !detail.is_outdated && againButton(detail)),
       run?.assessment && [
         h("p", { class: "rehearsal-air" }, airWords(run.conditions)),
@@ -77,7 +91,10 @@ export function createAssessment(store, rehearsing, { canRehearse, seeInSpace })
           icon("move-3d", "small"),
           t("See it in 3D"),
         ),
-        routesOf(run.assessment, detail, track, { open: chosenRoute ?? worstRoute(run.assessment), choose }),
+        routesOf(run.assessment, detail, isStage ? null : track, {
+          open: chosenRoute ?? worstRoute(run.assessment),
+          choose,
+        }),
       ],
       limitsOf(detail),
     ];
@@ -93,6 +110,8 @@ export function createAssessment(store, rehearsing, { canRehearse, seeInSpace })
       const { id, state, level, is_outdated, ground_changed } = detail;
       const key = [id, state, level, is_outdated, ground_changed, run, Boolean(track), chosenRoute, revision];
       refill(place, JSON.stringify(key), () => content(detail, run, track));
+      const shown = detail.runs[run]?.assessment;
+      dock?.draw(chosenRoute ?? (shown ? worstRoute(shown) : undefined));
     },
   };
 }
@@ -114,27 +133,6 @@ function ageNotice({ is_outdated, ground_changed }) {
     h("span", {}, t("Zones, assets or terrain have changed somewhere since.")),
   );
 }
-
-/** @param {RehearsalDetail} detail @param {number} shown @param {(sequence: number) => void} choose */
-const runButtons = ({ runs }, shown, choose) =>
-  h(
-    "div",
-    { class: "rehearsal-runs", role: "group", "aria-label": t("Conditions") },
-    runs.map(({ sequence, level, words }) =>
-      h(
-        "button",
-        {
-          type: "button",
-          class: "button small",
-          "aria-pressed": `${sequence === shown}`,
-          disabled: !level,
-          onclick: () => choose(sequence),
-        },
-        icon(iconOf(level), "small"),
-        words,
-      ),
-    ),
-  );
 
 /** @param {RehearsalRunWithAssessment} run @param {Child} again */
 const reusedNote = (run, again) =>
@@ -175,7 +173,11 @@ const routesOf = (assessment, { limits }, track, { open, choose }) =>
     const flown = track?.routes.find(({ uav }) => uav === route.uav);
     const element = h(
       "details",
-      { class: `rehearsal-route route-${routeNumber(route.uav)}`, open: open === route.uav },
+      {
+        class: `rehearsal-route route-${routeNumber(route.uav)}`,
+        dataset: { uav: route.uav },
+        open: open === route.uav,
+      },
       h(
         "summary",
         {},
@@ -193,7 +195,7 @@ const routesOf = (assessment, { limits }, track, { open, choose }) =>
       figuresTable(route, limits, assessment),
       flown && drawCharts(flown, route.reserve_percent),
       h("h4", {}, t("Targets")),
-      h("ol", { class: "rehearsal-targets" }, route.targets.map(targetRow)),
+      h("ol", { class: "rehearsal-targets" }, failedFirst(route.targets).map(targetRow)),
     );
     element.addEventListener("toggle", () => {
       if (element.open) choose(route.uav);
@@ -223,6 +225,10 @@ function figuresTable(route, limits, assessment) {
     ),
   );
 }
+
+/** @param {RehearsedTarget[]} targets */
+const failedFirst = (targets) =>
+  [...targets].sort((a, b) => Number(b.level === "fail") - Number(a.level === "fail") || a.target - b.target);
 
 /** @param {RehearsedTarget} target */
 function targetRow({ target, label, level, closest_m, is_reached, battery_percent, reasons }) {

@@ -11,7 +11,7 @@ import { mountForm } from "./form.js";
 /** @import { Rehearsal, RehearsalDetail } from "../../../api_types.d.ts" */
 /** @import { Binding } from "../../../page/keyboard.js" */
 /** @import { createRehearsing } from "../../rehearsal/rehearsal_actions.js" */
-/** @import { MissionPageState, MissionStore, RehearsalState } from "../../types.d.ts" */
+/** @import { MissionActions, MissionPageState, MissionStore, RehearsalState } from "../../types.d.ts" */
 
 /** @typedef {ReturnType<typeof createRehearsing>} Rehearsing */
 /**
@@ -20,6 +20,9 @@ import { mountForm } from "./form.js";
  * @property {boolean} isFrozen
  * @property {boolean} isStage the page shows only it
  * @property {() => unknown} seeInSpace opens the 3D view
+ * @property {MissionActions} actions
+ * @property {boolean} canPlan the plan may be changed
+ * @property {(positions: number[][]) => void} showPlaces on the map
  */
 
 /** @param {string} name */
@@ -35,10 +38,11 @@ export function whyNotRehearsed(state) {
 }
 
 /** @param {MissionStore} store @param {Rehearsing} rehearsing @param {RehearsalHow} how @returns {Binding[]} */
-export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen, isStage, seeInSpace }) {
+export function mountRehearsal(store, rehearsing, how) {
+  const { canRehearse, isFrozen, isStage } = how;
   const section = byId("rehearsal");
   const earlier = byId("rehearsal-list", HTMLSelectElement);
-  const assessment = createAssessment(store, rehearsing, { canRehearse, seeInSpace });
+  const assessment = createAssessment(store, rehearsing, how);
   const form = canRehearse ? mountForm({ onStart: start, onChange: () => draw(store.state) }) : null;
   if (form) place("cancel").addEventListener("click", () => void rehearsing.cancel());
   earlier.addEventListener("change", () => void rehearsing.show(earlier.value));
