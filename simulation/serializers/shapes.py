@@ -43,9 +43,7 @@ class FindingSerializer(serializers.Serializer):
     target = serializers.IntegerField(allow_null=True, help_text="place in the mission, from 0")
     reason = serializers.CharField()
     message = serializers.CharField(help_text="the reason after what it is about")
-    waypoint = serializers.IntegerField(
-        allow_null=True, help_text="near which it is, by its place in the route; null: none"
-    )
+    waypoint = serializers.IntegerField(allow_null=True, help_text="near which it is, by its place in the route; null: none")
     short_percent = serializers.FloatField(allow_null=True, help_text="of the battery that are missing at the end of a flight")
 
 
