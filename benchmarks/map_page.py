@@ -29,7 +29,7 @@ from playwright.sync_api import Browser, Page, Request, sync_playwright
 from benchmarks.network.large_region import tile_of, write_region
 from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
-from tests.browser.conftest import CHROMIUM_FLAGS
+from tests.browser.chromium import CHROMIUM_FLAGS
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]
 SIDE_DEG = 4.5  # some 500 by 360 km: the lines stand as close as in the region of a million

@@ -31,7 +31,7 @@ from playwright.sync_api import Browser, CDPSession, Page, sync_playwright
 from benchmarks.report import machine, table, write_section
 from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
-from tests.browser.conftest import CHROMIUM_FLAGS
+from tests.browser.chromium import CHROMIUM_FLAGS
 from tests.browser.operator_map import unlimited_type
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]

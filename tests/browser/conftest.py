@@ -23,15 +23,11 @@ from accounts.login import REAUTHENTICATION_S
 from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
 from tests.accounts.single_sign_on.openid_provider import settings_of_provider
+from tests.browser.chromium import CHROMIUM_FLAGS
 from tests.browser.pictures import HAS_PICTURES, save_picture
 from tests.browser.regions import region
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
-# findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card
-CHROMIUM_FLAGS = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
-    "--disable-sync",
-]  # fmt: skip
 TIMEOUT_MS = 45_000  # ./check runs other tests beside these
 expect.set_options(timeout=TIMEOUT_MS)
 # The processor draws maps and the 3D view: with a sixteenth of the pixels a map's page takes half as much of its time. The layout stays.
