@@ -194,7 +194,7 @@ STATIC_URL = "/static/"
 STATIC_ROOT = Path(os.environ.get("SPANWISE_STATIC_DIR") or STATE_DIR / "static")
 STORAGES = {
     "default": {"BACKEND": "django.core.files.storage.FileSystemStorage"},
-    "staticfiles": {"BACKEND": "config.static_files.HashedStaticFiles"},
+    "staticfiles": {"BACKEND": "config.static_files.StaticFiles"},
 }
 STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".spanwise")]
 

@@ -1,36 +1,54 @@
-"""Static files under names that change with their content, so that browsers keep them for a year."""
+"""Static files under names that change with their content, so that browsers keep them for a year; of pages' own files their bundles."""
 
-import re
+import json
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from django.contrib.staticfiles.storage import ManifestStaticFilesStorage
 
-MAX_CHAIN_LENGTH = 12  # imports in a row: one pass over all files for each
-# Files whose imports are rewritten: our own modules and style sheets, and libraries of several modules. Other libraries are served
-# unchanged, as searching them for imports takes most of the time. A library's files are named with and without lib/.
-REWRITTEN_FOLDERS = ("js", "css", "lib/maplibre-gl", "maplibre-gl", "lib/three", "three")
-# Imports as our own modules are formatted: at the start of a line, in double quotes. Django's patterns fit any format and take nine tenths
-# of the time: they search for an end from each "import" on, including those in comments.
-OWN_IMPORTS = [
-    (re.compile(r'(?m)^(?P<matched>(?P<import>(?:import|export) (?:[^;"]*? from )?)"(?P<url>[./][^"]+)";)'), '%(import)s"%(url)s";'),
-    (re.compile(r'(?P<matched>import\("(?P<url>[./][^"]+\.js)"\))'), 'import("%(url)s")'),
-]
+from config import page_bundles
+
+RECORD = "bundles.json"
+SOURCES_OF_BUNDLES = ("js/", "css/pages/")
+UNBUNDLED_SCRIPTS = ("js/theme_early.js", "js/offline/service_worker.js", "js/locale/")
 
 
-class HashedStaticFiles(ManifestStaticFilesStorage):
-    """Django's storage, with the imports of our own modules rewritten. Before collectstatic has run, names are plain."""
+class StaticFiles(ManifestStaticFilesStorage):
+    """Django's storage, with bundles in place of the modules and style sheets of pages. Before collectstatic has run, names are plain."""
 
-    support_js_module_import_aggregation = True
-    max_post_process_passes = MAX_CHAIN_LENGTH
-    _patterns: dict[str, list[tuple[re.Pattern[str], str]]]  # Django's: by folder and extension, patterns and replacements
+    patterns = ()  # what is not in a bundle names no other file
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self._patterns = {
-            f"{folder}/{extension}": patterns for folder in REWRITTEN_FOLDERS for extension, patterns in self._patterns.items()
-        } | {"js/*.js": OWN_IMPORTS}
+        self.chunks: dict[str, list[str]] = self._record().get("chunks", {})  # that the bundle of each source needs
+
+    def post_process(self, paths: dict[str, Any], dry_run: bool = False, **options: Any) -> Iterator[Any]:
+        yield from super().post_process({name: found for name, found in paths.items() if not is_bundled(name)}, dry_run, **options)
+        if dry_run:
+            return
+        root = Path(self.location)
+        bundles, files = page_bundles.build(root)
+        before = set(self._record().get("files", []))
+        for path in (root / page_bundles.FOLDER).rglob("*.*"):  # those of the build before serve pages that are open
+            if str(path.relative_to(root)) not in files | before:
+                path.unlink()
+        self.chunks = {name: bundle.chunks for name, bundle in bundles.items()}
+        (root / RECORD).write_text(json.dumps({"chunks": self.chunks, "files": sorted(files)}, indent=1))
+        self.hashed_files |= {name: bundle.path for name, bundle in bundles.items()}
+        self.save_manifest()
 
     def stored_name(self, name: str) -> str:
         if not self.hashed_files:
             return name
         return str(super().stored_name(name))
+
+    def _record(self) -> dict[str, Any]:
+        try:
+            return dict(json.loads((Path(self.location) / RECORD).read_text()))
+        except FileNotFoundError:
+            return {}
+
+
+def is_bundled(name: str) -> bool:
+    return name.startswith(SOURCES_OF_BUNDLES) and not name.startswith(UNBUNDLED_SCRIPTS)

@@ -1,22 +1,23 @@
-"""Static files under names that change with their content."""
+"""Bundles of pages' scripts and style sheets, and static files under names that change with their content."""
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
+from django.conf import settings
 from django.contrib.staticfiles.storage import staticfiles_storage
 from django.core.management import call_command
+from django.template import Context, Template
+from django.utils import translation
 
-from config.static_files import HashedStaticFiles
+from config.page_bundles import ALONE, BundlesFailed, build, shared_modules
+from config.static_files import StaticFiles
 
-IMPORTED = re.compile(r"""(?:\bfrom|\bimport\(|^import)\s*["']([./][^"']+)["']""", re.M)
-HASHED = re.compile(r"\.[0-9a-f]{12}\.\w+$")
-
-
-def imports_of(module: Path) -> list[str]:
-    """Addresses that a module imports; those in comments are of types alone."""
-    return IMPORTED.findall(re.sub(r"/\*.*?\*/", "", module.read_text(), flags=re.S))
+IMPORTED = re.compile(r"""(?:\bfrom|\bimport)\s*["']([./][^"']+)["']""")
+PAGE_SCRIPT = re.compile(r"""page_module ["'](js/[^"']+)["']""")
+PAGE_STYLES = re.compile(r"""rel="stylesheet" href="\{% static ["'](css/[^"']+)["']""")
 
 
 @pytest.fixture(scope="module")
@@ -24,26 +25,108 @@ def collected(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("static")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("django.conf.settings.STATIC_ROOT", folder)
-        patch.setattr(staticfiles_storage, "_wrapped", HashedStaticFiles(location=folder, base_url="/static/"))
+        patch.setattr(staticfiles_storage, "_wrapped", StaticFiles(location=folder, base_url="/static/"))
         call_command("collectstatic", interactive=False, verbosity=0)
     return folder
 
 
-def test_every_module_imports_hashed_names_alone(collected: Path) -> None:
-    names = json.loads((collected / "staticfiles.json").read_text())["paths"]
-    modules = [collected / hashed for name, hashed in names.items() if name.startswith("js/") and name.endswith(".js")]
-    assert len(modules) > 50
-    plain = {f"{module.name}: {found}" for module in modules for found in imports_of(module) if not HASHED.search(found)}
-    assert plain == set()
+@pytest.fixture
+def storage(collected: Path, monkeypatch: pytest.MonkeyPatch) -> StaticFiles:
+    storage = StaticFiles(location=collected, base_url="/static/")
+    monkeypatch.setattr(staticfiles_storage, "_wrapped", storage)
+    return storage
 
 
-def test_every_imported_module_is_there(collected: Path) -> None:
-    for module in collected.glob("js/**/*.????????????.js"):
-        for found in imports_of(module):
-            target = collected / found.removeprefix("/static/") if found.startswith("/") else (module.parent / found)
-            assert target.exists(), f"{module.name} imports {found}"
+def named_in_templates(pattern: re.Pattern[str]) -> set[str]:
+    return {name for path in (settings.BASE_DIR / "templates").rglob("*.html") for name in pattern.findall(path.read_text())}
+
+
+def test_every_script_and_style_sheet_of_a_page_is_a_bundle(storage: StaticFiles) -> None:
+    named = named_in_templates(PAGE_SCRIPT) | named_in_templates(PAGE_STYLES) - {"css/api-docs.css"}
+    assert len(named) > 25
+    assert {name for name in named if not storage.url(name).startswith("/static/bundles/")} == set()
+
+
+def test_a_page_has_one_script_beside_at_most_four_chunks(storage: StaticFiles) -> None:
+    assert {name: chunks for name, chunks in storage.chunks.items() if name.endswith("/main.js") and len(chunks) > 4} == {}
+
+
+def test_pages_share_their_chunks(storage: StaticFiles) -> None:
+    of_missions, of_live, of_list = (set(storage.chunks[f"js/{name}/main.js"]) for name in ("mission", "monitor", "missions"))
+    assert of_missions == of_live
+    assert of_list < of_live
+
+
+def test_a_page_preloads_all_that_its_script_imports(collected: Path, storage: StaticFiles) -> None:
+    text = Template('{% load page_module %}{% page_module "js/mission/main.js" %}').render(Context())
+    preloaded = set(re.findall(r'rel="modulepreload" href="/static/([^"]+)"', text))
+    script = re.findall(r'type="module" src="/static/([^"]+)"', text)
+    assert len(script) == 1
+    assert {module for path in (*preloaded, *script) for module in imported_by(collected / path, collected)} == preloaded
+
+
+def imported_by(module: Path, root: Path) -> set[str]:
+    return {str((module.parent / found).resolve().relative_to(root.resolve())) for found in IMPORTED.findall(module.read_text())}
+
+
+def test_every_import_of_a_bundle_is_there(collected: Path) -> None:
+    for module in collected.glob("bundles/js/**/*.js"):
+        for found in imported_by(module, collected):
+            assert (collected / found).exists(), f"{module.name} imports {found}"
+
+
+def test_every_bundle_has_a_source_map_with_the_modules(collected: Path, storage: StaticFiles) -> None:
+    sources = json.loads((collected / f"{storage.hashed_files['js/mission/main.js']}.map").read_text())["sources"]
+    assert any(source.endswith("static/js/mission/main.js") for source in sources)
+
+
+def test_a_page_in_another_language_preloads_its_texts(storage: StaticFiles) -> None:
+    with translation.override("de"):
+        text = Template('{% load page_module %}{% page_module "js/missions/main.js" %}').render(Context())
+    assert re.search(r'rel="modulepreload" href="/static/js/locale/de\.[0-9a-f]{12}\.js"', text)
+
+
+def test_bundles_of_the_same_sources_have_the_same_names(collected: Path, storage: StaticFiles) -> None:
+    again, _ = build(collected)
+    assert {name: bundle.path for name, bundle in again.items()} == {name: storage.hashed_files[name] for name in again}
+
+
+def test_bundles_of_the_build_before_are_kept_and_those_of_earlier_builds_deleted(collected: Path, tmp_path: Path) -> None:
+    root = tmp_path / "static"
+    shutil.copytree(collected, root)
+    record = json.loads((root / "bundles.json").read_text())
+    before, earlier = "bundles/js/before-ABCDEFGH.js", "bundles/js/earlier-ABCDEFGH.js"
+    (root / "bundles.json").write_text(json.dumps(record | {"files": [*record["files"], before]}))
+    for path in (before, earlier):
+        (root / path).write_text("")
+    list(StaticFiles(location=root, base_url="/static/").post_process({}))
+    assert (root / before).exists()
+    assert not (root / earlier).exists()
+
+
+def test_without_esbuild_collecting_says_what_installs_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("config.page_bundles.settings.BASE_DIR", tmp_path)
+    with pytest.raises(BundlesFailed, match="scripts/setup"):
+        build(tmp_path)
 
 
 def test_before_files_are_collected_names_are_plain(tmp_path: Path) -> None:
-    storage = HashedStaticFiles(location=tmp_path, base_url="/static/")
+    storage = StaticFiles(location=tmp_path, base_url="/static/")
     assert storage.url("js/api.js") == "/static/js/api.js"
+    assert storage.chunks == {}
+
+
+def test_what_pages_without_a_map_share_is_loaded_by_all_pages() -> None:
+    """list -> dom, table; account -> dom; plan, live -> dom, layer, map -> library; own is the plan's alone."""
+    library = "node_modules/.spanwise/maplibre-gl/maplibre-gl.mjs"
+    graph: dict[str, list[str]] = {
+        "list": ["dom", "table"], "account": ["dom"], "plan": ["dom", "layer", "map", "own"], "live": ["dom", "layer", "map"],
+        "dom": [], "table": [], "layer": [], "own": [], "map": [library], library: [],
+    }  # fmt: skip
+    shared = shared_modules(["list", "account", "plan", "live"], graph)
+    assert shared["list"] == shared["account"] == ["dom"]
+    assert shared["plan"] == shared["live"] == ["dom", "layer", "map"]
+
+
+def test_a_small_page_loads_one_file(storage: StaticFiles) -> None:
+    assert {name: storage.chunks[name] for name in ALONE} == {name: [] for name in ALONE}

@@ -299,7 +299,7 @@ http {{
 {headers}
         }}
         # A name that changes with the content: browsers keep such a file for a year and do not ask again.
-        location ~ "^/static/(?<hashed>.+\\.[0-9a-f]{{12}}\\.[a-z0-9]+)$" {{
+        location ~ "^/static/(?<hashed>.+\\.[0-9a-f]{{12}}\\.[a-z0-9]+|bundles/.+)$" {{
             alias "{quoted(site.static)[1:-1]}/$hashed";
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}

@@ -222,7 +222,7 @@ function remember() {
 async function showMap() {
   const isSeen = wide.matches || byId("fleet-body").dataset.open;
   if (!isSeen || store.state.uavs === null) return;
-  const { createFleetMap } = await import("./fleet_map.js");
+  const { createFleetMap } = await import("/static/js/fleet/fleet_map.js");
   map ??= createFleetMap({
     page,
     rows: store.state,

@@ -22,8 +22,7 @@ const OWNER = "/.offline/owner";
 const NO_CONNECTION = "/offline";
 const TILES = "/api/v1/tiles/";
 const KEPT_AT = "X-Offline-Copy"; // header of a stored answer: when it was stored; of a request: it is for a page of the copy
-const HASHED = /^\/static\/.+\.[0-9a-f]{12}\.[a-z0-9]+$/;
-const LIBRARY_IMPORT = /(?:from|import)\s*["'](\.[^"']+)["']/g; // of a library of several modules; ours stand in the page
+const HASHED = /^\/static\/(?:.+\.[0-9a-f]{12}\.[a-z0-9]+|bundles\/.+)$/;
 const STATIC_FILE = /(?:href|src|content)="(\/static\/[^"?#]+\.[a-z0-9]+)"/g;
 const PAGE_DATA = /<script id="page" type="application\/json">(.*?)<\/script>/s;
 const MAX_AGE_MS = 7 * 86_400_000;
@@ -86,16 +85,10 @@ async function fetched(address) {
 /** The static files that a page names. @param {string} html */
 async function keepFiles(html) {
   const cache = await caches.open(SHELL);
-  /** @param {string[]} files @returns {Promise<void>} */
-  const keepAll = (files) =>
-    each(files, async (address) => {
-      if (HASHED.test(address) && (await cache.match(address))) return;
-      const answer = await fetched(address);
-      const text = address.endsWith(".mjs") ? await answer.clone().text() : "";
-      await cache.put(address, answer);
-      await keepAll([...text.matchAll(LIBRARY_IMPORT)].map(([, name]) => new URL(name, answer.url).pathname));
-    });
-  await keepAll([...new Set([...html.matchAll(STATIC_FILE)].map(([, address]) => address))]);
+  const files = new Set([...html.matchAll(STATIC_FILE)].map(([, address]) => address));
+  await each([...files], async (address) => {
+    if (!HASHED.test(address) || !(await cache.match(address))) await cache.put(address, await fetched(address));
+  });
 }
 
 async function keepNoConnectionPage() {

@@ -44,7 +44,7 @@ export function mountSceneOpener(options) {
     if (!asked) return false;
     close();
     showOpen(true);
-    const own = import("./panel.js").then(({ openPanel }) =>
+    const own = import("/static/js/scene/panel.js").then(({ openPanel }) =>
       openPanel(frame, {
         ...asked,
         takesFocus,
