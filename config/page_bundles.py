@@ -9,11 +9,14 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import brotli
 from django.conf import settings
 
 FOLDER = "bundles"  # of the collected static files; every name in it changes with the content
 SOURCES = settings.BASE_DIR / "static"
 MAP_LIBRARY = "node_modules/.spanwise/maplibre-gl/maplibre-gl.mjs"
+BROTLI_QUALITY = 9  # 11 saves another 8 % and takes 6 s more
+MAP_WORKER = "lib/maplibre-gl/maplibre-gl-worker.mjs"
 LATER = ("js/fleet/fleet_map.js", "js/scene/panel.js")  # imported by pages with a map once they are needed
 ALONE = ("js/account/passkey_form.js", "js/admin/geometry_map.js", "js/offline/main.js")  # they need little of what others share
 OPTIONS = ("--bundle", "--format=esm", "--charset=utf8", "--log-level=warning")
@@ -49,6 +52,7 @@ def build(static_root: Path) -> tuple[dict[str, Bundle], set[str]]:
         lines = [*(f'import "{path}";' for path in imported), f'export * from "{SOURCES / name}";']
         scripts[name].write_text("\n".join(lines))
     alone = {name: SOURCES / name for name in (*ALONE, *_names("css/pages/*.css"))}
+    alone[MAP_WORKER] = settings.BASE_DIR / Path(MAP_LIBRARY).parent / Path(MAP_WORKER).name
     scripts["js/shared/map_library.js"] = settings.BASE_DIR / MAP_LIBRARY  # an entry, so that no other module is in its chunk
     outputs = _esbuild(scripts, folder, "--splitting", *OF_PAGES, later=entries)["outputs"] | _esbuild(alone, folder, *OF_PAGES)["outputs"]
     shutil.rmtree(entries)
@@ -61,7 +65,18 @@ def build(static_root: Path) -> tuple[dict[str, Bundle], set[str]]:
         for path, output in outputs.items()
         if output.get("entryPoint") in names
     }
-    return bundles, set(of_root.values())
+    return bundles, {*of_root.values(), *_compressed(static_root, of_root.values())}
+
+
+def _compressed(static_root: Path, paths: Iterable[str]) -> list[str]:
+    """Write the Brotli form of scripts and style sheets beside them, which the proxy sends; main-HASH.js has main-HASH.br.js."""
+    found = []
+    for path in (static_root / path for path in paths if not path.endswith(".map")):
+        target = path.with_suffix(f".br{path.suffix}")
+        found.append(str(target.relative_to(static_root)))
+        if not target.exists():
+            target.write_bytes(brotli.compress(path.read_bytes(), quality=BROTLI_QUALITY))
+    return found
 
 
 def _names(pattern: str) -> list[str]:

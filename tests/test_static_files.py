@@ -5,6 +5,7 @@ import re
 import shutil
 from pathlib import Path
 
+import brotli
 import pytest
 from django.conf import settings
 from django.contrib.staticfiles.storage import staticfiles_storage
@@ -70,9 +71,21 @@ def imported_by(module: Path, root: Path) -> set[str]:
 
 
 def test_every_import_of_a_bundle_is_there(collected: Path) -> None:
-    for module in collected.glob("bundles/js/**/*.js"):
+    for module in (path for path in collected.glob("bundles/js/**/*.js") if ".br." not in path.name):
         for found in imported_by(module, collected):
             assert (collected / found).exists(), f"{module.name} imports {found}"
+
+
+def test_every_bundle_lies_beside_its_brotli_form(collected: Path) -> None:
+    bundles = [path for ending in ("js", "css") for path in collected.glob(f"bundles/**/*.{ending}") if ".br." not in path.name]
+    assert len(bundles) > 30
+    for path in bundles:
+        assert brotli.decompress(path.with_suffix(f".br{path.suffix}").read_bytes()) == path.read_bytes()
+
+
+def test_the_worker_of_the_map_is_a_bundle(storage: StaticFiles) -> None:
+    assert storage.url("lib/maplibre-gl/maplibre-gl-worker.mjs").startswith("/static/bundles/lib/maplibre-gl/maplibre-gl-worker-")
+    assert storage.chunks["lib/maplibre-gl/maplibre-gl-worker.mjs"] == []
 
 
 def test_every_bundle_has_a_source_map_with_the_modules(collected: Path, storage: StaticFiles) -> None:

@@ -90,14 +90,12 @@ def _proxied(
     scheme: str,
     *,
     to: tuple[str, str],
-    compression: str = "on",
     faults: str = "warn",
     again: str = "error",
     limits: str = "",
 ) -> str:
     return f"""
         location {location} {{
-            gzip {compression};
             error_log stderr {faults};
             proxy_pass {to[0]};{to[1]}
             proxy_http_version 1.1;
@@ -228,9 +226,7 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         unavailable="Spanwise is starting or has been stopped. Please try again in a moment.",
         too_large="This is more than Spanwise takes in one request.",
     )
-    # Compression makes an ETag weak, which never matches in If-Match: all edits of missions would be refused.
     again = "error" if site.web[0].startswith("unix:") else "error timeout"  # a machine that is down refuses no connection
-    places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off", again=again)
     # A planning request changes nothing: if its program dies, another one gets it.
     plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again=f"{again} non_idempotent")
     costly = "".join(
@@ -266,6 +262,8 @@ http {{
         "~^(?<asked>[^? ]+ [^? ]+)\\?" "$asked?...";
         default $request;
     }}
+    # Bundles lie beside their Brotli form (config/page_bundles.py). Browsers accept it over https, and on the machine itself.
+    map "$http_accept_encoding $uri" $bundle_in_brotli {{ "~\\bbr\\b.* /static/bundles/.+\\.(js|css)$" 1; default ""; }}
     map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
 {proxy_limits.zones()}
@@ -300,10 +298,20 @@ http {{
         }}
         # A name that changes with the content: browsers keep such a file for a year and do not ask again.
         location ~ "^/static/(?<hashed>.+\\.[0-9a-f]{{12}}\\.[a-z0-9]+|bundles/.+)$" {{
+            if ($bundle_in_brotli) {{ rewrite ^/static/(.+)\\.(js|css)$ /.brotli/$1.br.$2 last; }}
             alias "{quoted(site.static)[1:-1]}/$hashed";
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}
-        }}{pages}{plans}{of_uavs}{costly}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
+        }}
+        location /.brotli/ {{
+            internal;
+            gzip off;
+            alias {quoted(f"{site.static}/")};
+            add_header Content-Encoding br;
+            add_header Vary Accept-Encoding;
+            add_header Cache-Control "public, max-age=31536000, immutable";
+{headers}
+        }}{pages}{plans}{of_uavs}{costly}{api}{links}{_websockets(scheme, to=live)}
 {failures_as_sentences}
 {failures_for_programs}{_too_many(headers)}
     }}{plain_server(site)}{beside}

@@ -21,6 +21,11 @@ from scripts.installation.system_packages import find_program
 from scripts.places import Places
 from scripts.proxy.proxy import configuration
 
+BUNDLES = {
+    "main-ABCDEFGH.js": b"export const answer = 42;\n" * 40, "main-ABCDEFGH.br.js": b"a script in Brotli",
+    "page-ABCDEFGH.css": b"a { color: red }\n" * 40, "page-ABCDEFGH.br.css": b"a style sheet in Brotli",
+    "main-ABCDEFGH.js.map": b"{}",
+}  # fmt: skip
 ANSWER = json.dumps({"name": "mission " * 200}).encode()
 
 
@@ -52,11 +57,14 @@ def served_site() -> Iterator[tuple[str, Path]]:
     nginx = find_program("nginx")
     if nginx is None:
         pytest.skip("nginx is not installed; ./run installs it")
-    with tempfile.TemporaryDirectory(prefix="sw-") as name:
-        places = Places(Path(name))
+    with tempfile.TemporaryDirectory(prefix="sw-") as folder:
+        places = Places(Path(folder))
         places.process("proxy").mkdir(parents=True)
         places.static.mkdir()
         (places.static / "main.mjs").write_text("export const answer = 42;\n")
+        (places.static / "bundles").mkdir()
+        for name, content in BUNDLES.items():
+            (places.static / "bundles" / name).write_bytes(content)
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]

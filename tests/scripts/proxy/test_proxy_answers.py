@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from scripts.places import WEB_PROGRAMS
-from tests.scripts.proxy.served_site import ANSWER, application_at, fetch, served_site
+from tests.scripts.proxy.served_site import ANSWER, BUNDLES, application_at, fetch, served_site
 
 
 @pytest.fixture(scope="module")
@@ -64,9 +64,40 @@ def test_answers_are_compressed(site: tuple[str, Path]) -> None:
 
 
 @pytest.mark.usefixtures("application")
-def test_a_missions_etag_stays_strong_so_that_if_match_can_match(site: tuple[str, Path]) -> None:
+def test_a_mission_is_compressed_and_its_etag_weak(site: tuple[str, Path]) -> None:
+    """The application compares what If-Match names without regard to that: workspace/api/preconditions.py."""
     _, headers, body = fetch(f"{site[0]}/api/v1/missions/1")
-    assert (headers["ETag"], body) == ('"7"', ANSWER)
+    assert (headers["ETag"], headers["Content-Encoding"], gzip.decompress(body)) == ('W/"7"', "gzip", ANSWER)
+
+
+@pytest.mark.parametrize("name", ["main-ABCDEFGH.js", "page-ABCDEFGH.css"])
+def test_a_bundle_is_sent_in_brotli_to_browsers_that_accept_it(site: tuple[str, Path], name: str) -> None:
+    _, plain, _ = fetch(f"{site[0]}/static/bundles/{name}", accept_encoding="identity")
+    for accepted in ("gzip, deflate, br, zstd", "br"):
+        status, headers, body = fetch(f"{site[0]}/static/bundles/{name}", accept_encoding=accepted)
+        stem, _, ending = name.partition(".")
+        assert (status, headers["Content-Encoding"], body) == (200, "br", BUNDLES[f"{stem}.br.{ending}"])
+        assert headers["Vary"] == "Accept-Encoding"
+        same = ("Content-Type", "Cache-Control", "Content-Security-Policy", "X-Content-Type-Options")
+        assert [headers[header] for header in same] == [plain[header] for header in same]
+
+
+def test_a_browser_without_brotli_gets_a_bundle_in_gzip_or_as_it_is(site: tuple[str, Path]) -> None:
+    address = f"{site[0]}/static/bundles/main-ABCDEFGH.js"
+    _, headers, body = fetch(address)
+    assert (headers["Content-Encoding"], gzip.decompress(body)) == ("gzip", BUNDLES["main-ABCDEFGH.js"])
+    assert headers["Cache-Control"] == "public, max-age=31536000, immutable"
+    _, headers, body = fetch(address, accept_encoding="identity, brx")
+    assert (headers["Content-Encoding"], body) == (None, BUNDLES["main-ABCDEFGH.js"])
+
+
+def test_a_source_map_is_sent_as_json(site: tuple[str, Path]) -> None:
+    status, headers, body = fetch(f"{site[0]}/static/bundles/main-ABCDEFGH.js.map", accept_encoding="br")
+    assert (status, headers["Content-Type"], headers["Content-Encoding"], body) == (200, "application/json", None, b"{}")
+
+
+def test_the_folder_of_brotli_has_no_address_of_its_own(site: tuple[str, Path]) -> None:
+    assert fetch(f"{site[0]}/.brotli/bundles/main-ABCDEFGH.br.js")[0] == 404
 
 
 def test_no_log_has_the_link_to_a_new_password(site: tuple[str, Path]) -> None:
