@@ -23,6 +23,7 @@ from django.core.management import CommandError, call_command
 from django.db import connection
 from django.db.migrations.executor import MigrationExecutor
 
+from config import page_bundles, static_files
 from config.private_servers import state_directory
 from scripts.places import DEMO_USER, Places
 from scripts.progress import step
@@ -39,6 +40,8 @@ def migrate() -> None:
 def collect_static_files(places: Places) -> None:
     """Copy and rename static files, unless they are unchanged since the last time: scanning all of them takes seconds."""
     digest = hashlib.sha256()
+    for source in (page_bundles, static_files):
+        digest.update(Path(source.__file__).read_bytes())
     for finder in get_finders():
         for name, storage in finder.list([]):
             digest.update(f"{name} {storage.size(name)} {storage.get_modified_time(name)}\n".encode())

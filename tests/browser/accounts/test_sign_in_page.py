@@ -86,7 +86,7 @@ def test_a_second_factor_is_set_up_asked_for_and_replaced_by_a_recovery_code(vis
 
 def test_a_word_stands_on_the_page_before_the_session_ends(visitor: Visitor, picture: Picture) -> None:
     page = account(newcomer(visitor, "walter"))
-    page.evaluate("path => import(path).then(({ watchSessionEnd }) => watchSessionEnd(240))", module(page, "session_end"))
+    page.evaluate('import("/static/js/page/session_end.js").then(({ watchSessionEnd }) => watchSessionEnd(240))')
     message = page.get_by_role("alert").filter(has_text="You will be signed out at")
     expect(message).to_be_visible()
     pictures(page, picture, "session-word")
@@ -94,14 +94,6 @@ def test_a_word_stands_on_the_page_before_the_session_ends(visitor: Visitor, pic
     pictures(page, picture, "session-word-phone")
     message.get_by_role("button", name="Stay signed in").click()
     expect(message).to_have_count(0)
-
-
-def module(page: Page, name: str) -> str:
-    """The address of a module of pages, by which it has been fetched."""
-    entries = "performance.getEntriesByType('resource').map((entry) => entry.name)"
-    found = page.evaluate(f"name => {entries}.find((address) => address.includes(name))", name)
-    assert isinstance(found, str)
-    return found
 
 
 def test_signing_out_tells_of_drafts_and_deletes_them(visitor: Visitor, picture: Picture) -> None:
