@@ -35,6 +35,7 @@ urlpatterns = [
     path("imports/<uuid:proposal_id>", imports.ImportDetail.as_view(), name="api-import"),
     path("imports/<uuid:proposal_id>/changes", imports.ImportChanges.as_view(), name="api-import-changes"),
     path("imports/<uuid:proposal_id>/apply", imports.ImportApply.as_view(), name="api-import-apply"),
+    path("imports/<uuid:proposal_id>/undo", imports.ImportUndo.as_view(), name="api-import-undo"),
     path("imports/<uuid:proposal_id>/discard", imports.ImportDiscard.as_view(), name="api-import-discard"),
     path("regions/delete", regions.RegionDelete.as_view(), name="api-region-delete"),
     path("geometry-checks", ground.GeometryCheck.as_view(), name="api-geometry-checks"),

@@ -27,6 +27,10 @@ class AssetFileError(ValueError):
         super().__init__("; ".join(str(fault) for fault in self.faults))
 
 
+class FaultyRows(AssetFileError):
+    """Raised for a file that can be read without the rows that have these faults."""
+
+
 def refused(place: str, message: Reason | str) -> AssetFileError:
     return AssetFileError([GeometryFault(place, message)])
 

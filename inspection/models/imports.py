@@ -165,6 +165,7 @@ class ProposedChange(models.Model):
     subject = models.CharField(max_length=20, help_text="asset kind, or zone")
     subject_id = models.BigIntegerField(null=True, blank=True, help_text="of the row that it changes")
     label = models.CharField(max_length=300)
+    key = models.CharField(max_length=300, blank=True, default="", db_default="", help_text="names the row, to leave it out")
     geometry = models.GeometryField(srid=4326, null=True, blank=True)
     before = models.JSONField(null=True, blank=True, help_text="facts that differ, as they are")
     after = models.JSONField(null=True, blank=True, help_text="facts that differ, as they would be")

@@ -122,6 +122,7 @@ class ChangePropertiesSerializer(serializers.Serializer):
     subject = serializers.CharField(help_text="asset kind, or zone")
     subject_id = serializers.IntegerField(allow_null=True, help_text="of the row that it changes")
     label: Declared = serializers.CharField()
+    key = serializers.CharField(allow_blank=True, help_text="in the parameter `excluded` of apply it leaves this change out")
     before = serializers.DictField(allow_null=True)
     after = serializers.DictField(allow_null=True)
 
@@ -217,6 +218,7 @@ def change_feature(change: DrawnChange) -> dict[str, Any]:
             "subject": change.subject,
             "subject_id": change.subject_id,
             "label": change.label,
+            "key": change.key,
             "before": change.before,
             "after": change.after,
         },

@@ -68,7 +68,7 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
         check_revision(before, expected_revision, "asset", asset.pk)
         asset.voltages_v = sorted(set(asset.voltages_v), reverse=True)
         asset.max_voltage_v = max(asset.voltages_v, default=None)
-        asset.centre = _centre(asset.geometry)
+        asset.centre = centre_of(asset.geometry)
         if isinstance(asset.geometry, LineString):
             asset.length_m = path_length_m(np.array(asset.geometry.coords))
             asset.node_osm_ids = _osm_nodes(asset, before)
@@ -202,7 +202,7 @@ def _record(actor: User, before: dict[str, Any] | None, after: dict[str, Any] | 
     )
 
 
-def _centre(geometry: GEOSGeometry) -> Point:
+def centre_of(geometry: GEOSGeometry) -> Point:
     if isinstance(geometry, Point):
         return geometry.clone()
     if isinstance(geometry, LineString):

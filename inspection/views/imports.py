@@ -29,6 +29,7 @@ from inspection.serializers.imports import (
 from inspection.services.imports.overpass import area_of
 from inspection.services.imports.uploads import UploadTooLarge, check_size_for
 from inspection.services.proposals import pipeline
+from inspection.services.proposals.undo import UNDO, is_undo, undo_name
 from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
 from inspection.views.uploads import CuratorsAlone
@@ -171,6 +172,38 @@ class ImportChanges(APIView):
         return Response({"type": "FeatureCollection", "features": [change_feature(change) for change in page.rows], "next": page.next})
 
 
+class ImportUndo(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(
+        operation_id="undo_import",
+        summary="Propose the undoing of an applied import of assets",
+        description="It is shown as a difference and applied like any other import. Rows that somebody edited since, or that a later "
+        "import changed, stay. A zone set is rolled back instead.",
+        request=None,
+        responses={202: ProposalSerializer, 409: OpenApiResponse(description="It is not applied, or cannot be undone.")},
+    )
+    def post(self, request: SignedInRequest, proposal_id: UUID) -> Response:
+        proposal = _proposal(proposal_id)
+        data_import = proposal.data_import
+        if (
+            proposal.state != ProposalState.APPLIED
+            or data_import is None
+            or proposal.kind not in (ImportKind.OSM, ImportKind.ASSETS)
+            or is_undo(proposal.parameters)
+        ):
+            raise ApiProblem(409, "not_undoable", _("Only an applied import of assets can be undone."))
+        with transaction.atomic():
+            undoing = pipeline.start_proposal(
+                kind=proposal.kind, origin=ProposalOrigin.ROLL_BACK, upload=None, file_name=undo_name(data_import),
+                parameters={UNDO: data_import.pk}, provenance={}, created_by=request.user,
+            )  # fmt: skip
+            send_job_of(undoing)
+        answer = _answer(request, undoing.pk, 202)
+        answer["Location"] = reverse("api-import", args=[undoing.pk])
+        return answer
+
+
 class ImportApply(APIView):
     permission_classes = [CuratorsAlone]
 
@@ -179,7 +212,8 @@ class ImportApply(APIView):
         summary="Make the ground what the file says",
         description="If the ground has changed since the difference was taken, and the difference with it, nothing is applied: the "
         "proposal is `ready` again with the new difference. Where `summary.not_read` lists records with faults, the parameter `seen` "
-        "holds the `place` of each; without one of them the answer is 409 `not_seen`, with the missing places in its details.",
+        "holds the `place` of each; without one of them the answer is 409 `not_seen`, with the missing places in its details. The "
+        "parameter `excluded` lists the `key` of each change that is left out.",
         request=ParametersSerializer,
         responses={202: ProposalSerializer} | IN_ANOTHER_STATE,
     )

@@ -788,6 +788,8 @@ export interface components {
             /** @description of the row that it changes */
             subject_id: number | null;
             label: string;
+            /** @description in the parameter `excluded` of apply it leaves this change out */
+            key: string;
             before: {
                 [key: string]: unknown;
             } | null;

@@ -18,7 +18,7 @@ from inspection.importers.assets.geopackage import geopackage_source
 from inspection.importers.assets.kml import kml_source
 from inspection.importers.assets.reference_systems import ROUGH_M, ToWgs84, name_of_system, system_of_code
 from inspection.importers.assets.shapefiles import shapefile_source
-from inspection.importers.rows import MAX_FAULTS, MAX_ROWS, AssetFileError, Cell, RawRow, Source, refused
+from inspection.importers.rows import MAX_FAULTS, MAX_ROWS, Cell, FaultyRows, RawRow, Source, refused
 
 MAX_VERTICES = 2_000_000
 MAX_PARTS = 5_000  # lines of one row
@@ -49,11 +49,11 @@ class RowFaults:
         if len(self.faults) < MAX_FAULTS:
             self.faults.append(fault)
         elif not self.leave_out:
-            raise AssetFileError(self.faults)
+            raise FaultyRows(self.faults)
 
     def refuse_if_any(self) -> None:
         if self.faults and not self.leave_out:
-            raise AssetFileError(self.faults)
+            raise FaultyRows(self.faults)
 
 
 class AssetFile:
@@ -199,4 +199,4 @@ def _refuse_if_no_degrees(source: Source) -> None:
         return
     x, y = row.geometry["coordinates"][:2]
     if abs(x) > 360 and abs(y) > 360:
-        raise refused(row.place, f"{x:.10g}, {y:.10g} are no degrees: name the reference system of the columns (crs, such as EPSG:2056)")
+        raise refused(row.place, f"{x:.10g}, {y:.10g} are no degrees: name the reference system of the columns, such as EPSG:2056")

@@ -84,7 +84,7 @@ def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has
     columns = unique_names(head["columns"])
     Columns().check(columns, name[:60])
     if head["wkt"] is None and not has_system:
-        raise refused(name[:60], "the layer does not say in which reference system it is: name it (crs, such as EPSG:2056)")
+        raise refused(name[:60], "the layer does not say in which reference system it is: name it, such as EPSG:2056")
     system = None if has_system else system_of_wkt(head["wkt"], name[:60])
     return Source(
         file_format, lambda: _rows(_DRIVERS[file_format], files, name, columns), crs=system, layer=name, layers=tuple(head["layers"]),

@@ -136,7 +136,7 @@ def _system(database: sqlite3.Connection, system_id: int, table: str) -> CRS | N
         ).fetchone()
     if row is None:
         raise refused(
-            table[:60], "the layer does not say in which reference system it is: name it (crs, such as EPSG:2056)"
+            table[:60], "the layer does not say in which reference system it is: name it, such as EPSG:2056"
         )  # fmt: skip
     if str(row[0]).upper() == "EPSG":
         return system_of_code(f"EPSG:{row[1]}", table[:60])

@@ -40,7 +40,7 @@ def shapefile_source(archive: Archive, layer: str, *, has_system: bool) -> Itera
     elif not has_system:
         raise refused(
             shape_name, "the .prj file is missing, so nobody knows where the coordinates are: put it into the archive, "
-            "or name the reference system (crs, such as EPSG:2056)",
+            "or name the reference system, such as EPSG:2056",
         )  # fmt: skip
     with ExitStack() as stack:
         shapes = stack.enter_context(archive.unpacked(shape_name))

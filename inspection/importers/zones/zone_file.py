@@ -75,9 +75,10 @@ def _is_number(value: Any) -> bool:
 class ZoneFileError(ValueError):
     """Raised for a file that is refused as a whole, with its faults."""
 
-    def __init__(self, faults: list[GeometryFault]) -> None:
+    def __init__(self, faults: list[GeometryFault], *, are_of_records: bool = False) -> None:
         super().__init__("; ".join(str(fault) for fault in faults))
         self.faults = faults
+        self.are_of_records = are_of_records  # the file can be read without these records
 
 
 @dataclass(frozen=True)
@@ -119,8 +120,9 @@ def read_zones(data: bytes, *, leave_out_faulty: bool = False) -> ZoneFile:
         found.faults.append(fault)
         raise ZoneFileError(found.faults) from fault
     records = _storable(read, found)
-    if found.faults and not (leave_out_faulty and _are_all_of_records(found.faults, read.unread)):
-        raise ZoneFileError(found.faults[:MAX_FAULTS])
+    are_of_records = _are_all_of_records(found.faults, read.unread)
+    if found.faults and not (leave_out_faulty and are_of_records):
+        raise ZoneFileError(found.faults[:MAX_FAULTS], are_of_records=are_of_records)
     if not records:
         raise ZoneFileError([GeometryFault("", "the file has no zones")])
     return ZoneFile(

@@ -7,7 +7,7 @@ missing from the file are marked as vanished, never deleted.
 
 # ruff: noqa: S608 -- the statements are made of the constants of this package
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -43,6 +43,15 @@ _LABEL = (
     "COALESCE(NULLIF({row}.ref, ''), NULLIF({row}.name, ''), "
     "INITCAP({row}.kind) || ' ' || COALESCE({row}.osm_type || {row}.osm_id, {row}.source_key))"
 )
+_KEY = "COALESCE(s.kind || ' ' || COALESCE(s.osm_type || s.osm_id, '') || ' ' || s.source_key, 'asset ' || f.asset_id)"
+_EXCLUDED = f"""
+DELETE FROM asset_fate WHERE ctid IN (
+    SELECT f.ctid FROM asset_fate f LEFT JOIN asset_staging s ON s.id = f.staging_id WHERE {_KEY} = ANY(%(excluded)s))
+"""
+_BY_KIND = """
+SELECT COALESCE(a.kind, s.kind), f.fate, count(*)
+FROM asset_fate f LEFT JOIN asset_staging s ON s.id = f.staging_id LEFT JOIN inspection_asset a ON a.id = f.asset_id GROUP BY 1, 2
+"""
 _ENTRY = "INSERT INTO workspace_auditentry (organisation_id, actor_id, action, subject_type, subject_id, before, after)"
 
 
@@ -58,6 +67,7 @@ class Sample:
     geometry_in_file: bytes | None
     facts: str | None
     facts_in_file: str | None
+    key: str  # names the row in this difference, however often the file is read
 
 
 @dataclass(frozen=True)
@@ -112,7 +122,8 @@ WHERE {self.missing} AND (a.vanished_at IS NULL OR a.is_edited AND NOT %(replace
         """Return SQL for samples: kind, asset and label, then label, geometry and facts of both sides, the stored one first."""
         return f"""
 SELECT COALESCE(a.kind, s.kind), a.id, {_LABEL.format(row="a")}, {_LABEL.format(row="s")}, ST_AsBinary(a.geometry), ST_AsBinary(s.geometry),
-       CASE WHEN a.id IS NOT NULL THEN {self.stored_facts} END::text, CASE WHEN s.id IS NOT NULL THEN {self.facts_in_file} END::text
+       CASE WHEN a.id IS NOT NULL THEN {self.stored_facts} END::text, CASE WHEN s.id IS NOT NULL THEN {self.facts_in_file} END::text,
+       {_KEY}
 FROM asset_fate f LEFT JOIN asset_staging s ON s.id = f.staging_id LEFT JOIN inspection_asset a ON a.id = f.asset_id
 WHERE f.fate = %(fate)s ORDER BY {self.order} LIMIT %(most)s
 """
@@ -171,11 +182,23 @@ WHERE f.fate = 'new' ORDER BY s.kind DESC, s.osm_id, s.id
 class Merge:
     """A staged file and its source: the changes of the file, and their execution. Valid in the transaction that staged it."""
 
-    def __init__(self, cursor: CursorWrapper, source: Source, *, replace_edited: bool, asset_set: int | None = None, **values: Any) -> None:
+    def __init__(
+        self,
+        cursor: CursorWrapper,
+        source: Source,
+        *,
+        replace_edited: bool,
+        asset_set: int | None = None,
+        excluded: Sequence[str] = (),
+        **values: Any,
+    ) -> None:
+        """excluded: keys of rows of the difference that stay as they are, see Sample."""
         self._cursor, self._source = cursor, source
         self._values = {"replace_edited": replace_edited, "asset_set": asset_set, "data_import": None} | values
         cursor.execute(f"ANALYZE asset_staging ({_JOINED}), inspection_asset ({_JOINED})")  # or statistics show it empty after an import
         cursor.execute(source.fates, self._values)
+        if excluded:
+            cursor.execute(_EXCLUDED, {"excluded": list(excluded)})
         cursor.execute("ANALYZE asset_fate")
         cursor.execute("SELECT fate, count(*), count(*) FILTER (WHERE is_edited AND staging_id IS NOT NULL) FROM asset_fate GROUP BY fate")
         found = {fate: (number, edited) for fate, number, edited in cursor.fetchall()}
@@ -191,6 +214,27 @@ class Merge:
         """Return the first rows of this action."""
         self._cursor.execute(self._source.samples, self._values | {"fate": action.value, "most": most})
         return [Sample(*row) for row in self._cursor.fetchall()]
+
+    def by_kind(self) -> dict[str, dict[str, int]]:
+        """Return the numbers of `numbers`, of each kind of asset. Rows with older data in the file count as unchanged."""
+        self._cursor.execute(_BY_KIND)
+        found: dict[str, dict[str, int]] = {}
+        for kind, fate, number in self._cursor.fetchall():
+            counted = found.setdefault(kind, dict.fromkeys(self.numbers, 0))
+            counted[fate if fate in counted else UNCHANGED] += number
+        return found
+
+    def missing(self, **values: Any) -> dict[str, int]:
+        """Return by kind how many assets the file would remove with other values of the source, beside those that it removes anyway."""
+        self._cursor.execute(
+            f"""
+SELECT a.kind, count(*) FROM inspection_asset a
+WHERE {self._source.missing} AND a.vanished_at IS NULL
+  AND NOT EXISTS (SELECT FROM asset_staging s WHERE {self._source.same})
+  AND NOT EXISTS (SELECT FROM asset_fate f WHERE f.asset_id = a.id AND f.fate = 'vanished') GROUP BY 1""",
+            self._values | values,
+        )
+        return dict(self._cursor.fetchall())
 
     def write(self, data_import: int, actor: User | None, notify: Callable[[float], None] = lambda share: None) -> None:
         """Update the assets to the file. notify is called with the share done, 0 to 1."""

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -112,6 +112,7 @@ def import_assets(
     replace_edited: bool = False,
     provenance: Provenance | None = None,
     progress: Progress | None = None,
+    excluded: Sequence[str] = (),
 ) -> DataImport:
     """Update the set to the file under the mapping in parameters, and return the import with its counts.
 
@@ -131,7 +132,7 @@ def import_assets(
         tally = Tally()
         faults = row_faults(parameters)
         with staged(
-            file, parameters, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, progress=progress
+            file, parameters, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, progress=progress, excluded=excluded
         ) as found:  # fmt: skip
             notify(Reason("writing_assets"), 0.6)
             owner = organisation_of(provenance, imported_by)
@@ -200,6 +201,7 @@ def staged(
     replace_edited: bool,
     columns: Iterable[str] | None = None,
     progress: Progress | None = None,
+    excluded: Sequence[str] = (),
 ) -> Iterator[Merge]:
     """Stage the file's records in a temporary table, with their difference to the set. Call it in a transaction.
 
@@ -216,7 +218,8 @@ def staged(
         faults.refuse_if_any()
         if tally.unknown_kinds:
             raise UnfinishedMapping(unknown_kinds(mapping.kind_column, tally))
-        yield Merge(cursor, ASSET_SET, replace_edited=replace_edited, asset_set=asset_set.pk if asset_set else None)
+        key = asset_set.pk if asset_set else None
+        yield Merge(cursor, ASSET_SET, replace_edited=replace_edited, asset_set=key, excluded=excluded)
 
 
 def reported(rows: Iterable[Row], progress: Progress | None, code: str, share: float) -> Iterator[Row]:

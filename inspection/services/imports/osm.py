@@ -47,7 +47,7 @@ AND (a.data_import_id = ANY(%(sources)s) OR %(whole_region)s)
 AND a.kind || ' ' || a.subtype <> ALL(%(filtered_out)s)
 AND NOT {_IS_NEWER}
 AND (%(box)s::geometry IS NULL OR ST_Intersects(ST_Points(a.geometry), %(box)s::geometry))""",
-    facts=("osm_type", "osm_id", "node_osm_ids", "parts", "content_hash"),
+    facts=("osm_type", "osm_id", "node_osm_ids", "parts", "content_hash", "data_import_id"),
     order="a.id, s.kind, s.osm_id",
 )
 # Of duplicate objects in a file the last one counts.
@@ -76,13 +76,15 @@ def import_osm(
     progress: Progress | None = None,
     replace_edited: bool = False,
     replace_region: bool = False,
+    excluded: Sequence[str] = (),
     provenance: Provenance | None = None,
 ) -> DataImport:
     """Update the assets to the file and return the import with its counts. Raises OsmFileError and changes nothing.
 
     Importing the same file again changes nothing. Rows that a curator edited stay (unless replace_edited), and so do rows from a file with
     newer data. Assets of an earlier file of the same region that are missing from this one are marked as vanished, never deleted: see
-    _sources. With replace_region that applies to all OSM assets within the file's extent, whatever file they came from.
+    _sources. With replace_region that applies to all OSM assets within the file's extent, whatever file they came from. `excluded` names
+    rows of the difference that stay as they are.
     """
     with path.open("rb") as file:
         sha256 = hashlib.file_digest(file, "sha256").hexdigest()
@@ -96,7 +98,7 @@ def import_osm(
                 | {"attribution": SYNTHETIC_ATTRIBUTION if is_synthetic else content.attribution},
             )  # fmt: skip
             values = _values(content, path, is_synthetic, replace_region, but=data_import)
-            merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
+            merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, excluded=excluded, **values)
             numbers = _numbers(merge)
             _notify(progress, Reason("writing"), 0.2)
             merge.write(data_import.pk, imported_by, lambda share: _notify(progress, Reason("writing"), 0.2 + 0.8 * share))
@@ -124,8 +126,11 @@ def difference_of_osm(
             merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
             _notify(progress, Reason("comparing"), 0.6)
             samples = {action: merge.samples(action, most) for action in ROW_ACTIONS}
+            more = {} if replace_region else merge.missing(**_values(content, path, False, True))
+            tables = {"by_kind": merge.by_kind(), "replaced_region_removes": more}
         transaction.set_rollback(True)
-    return OsmDifference(content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp}, _numbers(merge), samples)
+    counts = content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp} | tables
+    return OsmDifference(counts, _numbers(merge), samples)
 
 
 @contextmanager

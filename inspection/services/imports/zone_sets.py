@@ -2,7 +2,7 @@
 
 import json
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -66,6 +66,21 @@ class ZoneDifference:
     @property
     def changes_something(self) -> bool:
         return bool(self.new or self.changed or self.vanished)
+
+    def without(self, excluded: Collection[str]) -> "ZoneDifference":
+        """Return the difference without the changes of these keys, which stay as they are."""
+        return replace(
+            self,
+            new=[record for record in self.new if key_of(record) not in excluded],
+            changed=[(zone, record) for zone, record in self.changed if key_of(zone) not in excluded],
+            vanished=[zone for zone in self.vanished if key_of(zone) not in excluded],
+            kept=[(zone, record) for zone, record in self.kept if key_of(zone) not in excluded],
+        )
+
+
+def key_of(zone: NoFlyZone | ZoneRecord) -> str:
+    """Return what names a zone in a difference."""
+    return f"zone {zone.layer} {zone.identifier}"
 
 
 def difference_of(

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections import Counter
+from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -36,6 +37,7 @@ def import_zones(
     replace_all: bool | None = None,
     source_format: str = "",
     leave_out_faulty: bool = False,
+    excluded: Sequence[str] = (),
     provenance: Provenance | None = None,
 ) -> DataImport:
     """Update the set (by default named after the file) to the file, and return the import with its counts.
@@ -51,7 +53,7 @@ def import_zones(
         zone_set, _ = ZoneSet.objects.select_related("data_import").get_or_create(name=name)
         if not (set_name is not None if replace_all is None else replace_all):
             refuse_if_elsewhere(zone_set, content, f"--set {name} replaces them, another name keeps both")
-        found = difference_of(zone_set, content.zones, replace_edited=replace_edited, unread=content.unread)
+        found = difference_of(zone_set, content.zones, replace_edited=replace_edited, unread=content.unread).without(excluded)
         counts = zone_counts(content) | found.numbers | {"removed": len(found.vanished)}
         origin = _origin(content, provenance, is_synthetic=is_synthetic)
         if zone_set.data_import is not None and zone_set.data_import.sha256 == sha256 and not found.changes_something:

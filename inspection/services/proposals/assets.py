@@ -12,7 +12,7 @@ from django.db import transaction
 from inspection.importers.assets.asset_file import AssetFile
 from inspection.importers.assets.mapping import Tally
 from inspection.importers.assets.survey import Survey, suggested_mapping, survey_of
-from inspection.importers.rows import AssetFileError
+from inspection.importers.rows import AssetFileError, FaultyRows
 from inspection.models import ROW_ACTIONS, AssetSet, DataImport
 from inspection.services.facts import ASSET_FACTS, differing
 from inspection.services.imports.asset_merge import UNCHANGED, Merge
@@ -30,7 +30,8 @@ from inspection.services.imports.assets import (
     staged,
     with_what_is_known,
 )
-from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading, excluded_of
+from inspection.services.proposals.undo import apply_undo, is_undo, read_undo
 from operation.reasons import Reason, reason_of
 from workspace.models import User
 
@@ -40,6 +41,8 @@ NOTHING = dict.fromkeys((*ROW_ACTIONS, UNCHANGED), 0)
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
     """Return the content of the file and, once the mapping is sufficient, its changes of the set. Raises FileRefused."""
+    if path is None and is_undo(parameters):
+        return read_undo(parameters)
     with _faults_as_refusal():
         file_path = _file(path)
         name = set_name_of(file_path, parameters.get("set_name"))
@@ -50,6 +53,8 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
             faults = row_faults(stated)
             survey = survey_of(reported(file.rows(faults), progress, "reading_rows_row", 0.1), file.source.columns)
             faults.refuse_if_any()
+            if not survey.rows:
+                raise FileRefused([Fault("", Reason("no_records"))])
             summary = _summary(file, survey, name, stated, file_path)
             if words := _nothing_to_read(file, survey):
                 return Reading(summary | {"needs_mapping": True, "words": words}, dict(NOTHING))
@@ -64,10 +69,12 @@ def apply(
     *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
 ) -> DataImport:
     """Update the set to the file. Raises FileRefused."""
+    if path is None and is_undo(parameters):
+        return apply_undo(parameters, applied_by)
     with _faults_as_refusal():
         return import_assets(
             path=_file(path), parameters=parameters, imported_by=applied_by, provenance=provenance,
-            replace_edited=parameters.get("replace_edited") is True, progress=progress,
+            replace_edited=parameters.get("replace_edited") is True, progress=progress, excluded=excluded_of(parameters),
         )  # fmt: skip
 
 
@@ -91,10 +98,11 @@ def _compared(
             ) as found,
         ):
             changes = tuple(_changes(found))
+            by_kind = found.by_kind()
             ids = count_of_ids(asset_set.pk if asset_set else None, organisation)
     except UnfinishedMapping as error:
         return Reading(summary | {"needs_mapping": True, "words": reason_of(error)}, dict(NOTHING))
-    return Reading(summary | counts_of(file, tally, faults, ids), found.numbers, changes)
+    return Reading(summary | counts_of(file, tally, faults, ids) | {"by_kind": by_kind}, found.numbers, changes)
 
 
 def _nothing_to_read(file: AssetFile, survey: Survey) -> str:
@@ -135,7 +143,7 @@ def _changes(found: Merge) -> Iterator[Change]:
         for row in found.samples(action, MAX_CHANGES):
             before, after = differing(_shown(row.facts), _shown(row.facts_in_file))
             drawn = GEOSGeometry(memoryview(bytes(row.geometry_in_file or row.geometry or b"")), srid=4326)
-            yield Change(action, row.kind, row.label_in_file or row.label or "", row.asset_id, drawn, before, after)
+            yield Change(action, row.kind, row.label_in_file or row.label or "", row.asset_id, drawn, before, after, row.key)
 
 
 def _shown(text: str | None) -> dict[str, Any] | None:
@@ -157,8 +165,9 @@ def _faults_as_refusal() -> Iterator[None]:
     try:
         yield
     except AssetFileError as error:
-        raise FileRefused(
+        faults = (
             Fault(fault.place, fault.why, (fault.position.lon, fault.position.lat) if fault.position else None) for fault in error.faults
-        ) from error
+        )
+        raise FileRefused(faults, are_of_records=isinstance(error, FaultyRows)) from error
     except UnfinishedMapping as error:
         raise FileRefused([Fault("kind", reason_of(error))]) from error

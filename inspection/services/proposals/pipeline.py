@@ -15,6 +15,7 @@ from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 
 from inspection.auto_apply_hooks import AutoApplyRefusal, further_reasons, ground_mark
+from inspection.importers.foreign_formats import foreign_format
 from inspection.models import (
     MAX_REMOVED_PERCENT,
     DataImport,
@@ -42,7 +43,7 @@ APPLY_TASK = "inspection.tasks.apply_proposal"
 MAX_CHANGES_KEPT = 2_000  # of each action; users review a sample, and the totals cover all
 MAX_FAULTS_KEPT = 50
 READ = Reason("file_read")
-DECISIONS = {"replace_edited", "seen"}  # parameters of the applying user that do not affect the difference
+DECISIONS = {"replace_edited", "seen", "excluded"}  # parameters of the applying user that do not affect the difference
 _BATCH = 500
 
 
@@ -164,7 +165,7 @@ def read_proposal(*, job: Job, progress: Progress) -> Job | None:
             _store_reading(proposal, job, reading, revision)
             return _go_on_by_itself(proposal, job) if proposal.auto_apply else None
     except FileRefused as error:
-        refuse_proposal(proposal=proposal, faults=error.faults, job=job)
+        refuse_proposal(proposal=proposal, faults=error.faults, job=job, are_of_records=error.are_of_records)
     return None
 
 
@@ -225,7 +226,7 @@ def apply_proposal(*, job: Job, progress: Progress) -> None:
         refuse_proposal(proposal=proposal, faults=error.faults, job=job)
 
 
-def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job: Job | None = None) -> None:
+def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job: Job | None = None, are_of_records: bool = False) -> None:
     """Mark a proposal as refused: the file has faults or is unreadable, and none of it counts."""
     listed = [
         {"place": fault.place, **message_json(fault.message), "position": list(fault.position) if fault.position else None}
@@ -235,7 +236,10 @@ def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job:
         if job is not None and not finish_job(job=job, message=Reason("file_refused")):
             raise LostJob
         open_states = (ProposalState.READING, ProposalState.APPLYING)
-        ImportProposal.objects.filter(pk=proposal.pk, state__in=open_states).update(state=ProposalState.REFUSED, faults=listed)
+        summary = {"can_leave_out": True} if are_of_records else {}
+        ImportProposal.objects.filter(pk=proposal.pk, state__in=open_states).update(
+            state=ProposalState.REFUSED, faults=listed, summary=summary
+        )
 
 
 def settle_proposal_of(*, job: Job) -> None:
@@ -370,7 +374,7 @@ def _first_of_each(changes: tuple[Change, ...]) -> list[Change]:
 def _row(proposal: ImportProposal | None, change: Change) -> ProposedChange:
     return ProposedChange(
         proposal=proposal, action=change.action, subject=change.subject, subject_id=change.subject_id, label=change.label[:300],
-        geometry=change.geometry, before=change.before, after=change.after,
+        key=change.key[:300], geometry=change.geometry, before=change.before, after=change.after,
     )  # fmt: skip
 
 
@@ -382,6 +386,8 @@ def _with_file(proposal: ImportProposal, do: Callable[[Path | None, Provenance],
         return do(None, provenance)
     try:
         with upload_as_file(proposal.upload) as path:
+            if foreign := foreign_format(path):
+                raise FileRefused([Fault("", Reason("other_format", {"format": foreign}))])
             return do(path, replace(provenance, file_name=proposal.file_name))
     except UploadRefused as error:
         raise FileRefused([Fault("", reason_of(error))]) from error

@@ -28,6 +28,13 @@ class Change:
     geometry: GEOSGeometry | None = None
     before: dict[str, Any] | None = None
     after: dict[str, Any] | None = None
+    key: str = ""  # names the row in the difference, to leave it out
+
+
+def excluded_of(parameters: Mapping[str, Any]) -> list[str]:
+    """Return the keys of the changes that the applying user leaves out."""
+    stated = parameters.get("excluded")
+    return [key for key in stated if isinstance(key, str)] if isinstance(stated, list) else []
 
 
 @dataclass(frozen=True)
@@ -40,10 +47,11 @@ class Fault:
 
 
 class FileRefused(ValueError):
-    """Raised for a file with faults; none of it counts."""
+    """Raised for a file with faults; none of it counts. `are_of_records`: it can be read without the records that have them."""
 
-    def __init__(self, faults: Iterable[Fault]) -> None:
+    def __init__(self, faults: Iterable[Fault], *, are_of_records: bool = False) -> None:
         self.faults = tuple(faults)
+        self.are_of_records = are_of_records
         super().__init__("; ".join(f"{fault.place}: {fault.message}" if fault.place else str(fault.message) for fault in self.faults))
 
 

@@ -11,7 +11,7 @@ from inspection.importers.zones.records import UnreadRecord, ZoneRecord
 from inspection.importers.zones.zone_file import ZoneFileError
 from inspection.models import ChangeAction, DataImport, ImportKind, NoFlyZone, ZoneSet, ZoneSetVersion
 from inspection.services.facts import differing, zone_facts
-from inspection.services.imports.zone_sets import ZoneDifference, difference_of, record_facts, records_of_version
+from inspection.services.imports.zone_sets import ZoneDifference, difference_of, key_of, record_facts, records_of_version
 from inspection.services.imports.zones import (
     FORMAT_NAMES,
     import_zones,
@@ -21,7 +21,7 @@ from inspection.services.imports.zones import (
     set_name_of,
     zone_counts,
 )
-from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading, excluded_of
 from operation.reasons import Reason
 from workspace.models import User
 
@@ -49,6 +49,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
     found = difference_of(zone_set, content.zones, replace_edited=replace_edited, unread=content.unread)
     numbers = found.numbers | ({ChangeAction.NOT_READ.value: len(content.unread)} if content.unread else {})
     summary = zone_counts(content) | {"set": name, "is_new_set": zone_set is None or not zone_set.zones.exists()}
+    summary["by_kind"] = {"zone": found.numbers}
     return Reading(summary, numbers, (*_changes(found), *map(_not_read, content.unread)))
 
 
@@ -64,6 +65,7 @@ def apply(
             path=path, set_name=set_name_of(path, _set_name(parameters)), imported_by=applied_by,
             replace_edited=bool(parameters.get("replace_edited")), replace_all=bool(parameters.get("replace_all")),
             source_format=_source_format(parameters), leave_out_faulty=_leaves_out(parameters), provenance=provenance,
+            excluded=excluded_of(parameters),
         )  # fmt: skip
 
 
@@ -123,19 +125,23 @@ def _faults_as_refusal() -> Iterator[None]:
     try:
         yield
     except ZoneFileError as error:
-        raise FileRefused(
+        faults = (
             Fault(fault.place, fault.why, (fault.position.lon, fault.position.lat) if fault.position else None) for fault in error.faults
-        ) from error
+        )
+        raise FileRefused(faults, are_of_records=error.are_of_records) from error
 
 
 def _changes(found: ZoneDifference) -> Iterator[Change]:
     for record in found.new:
-        yield Change(ChangeAction.NEW, "zone", _label(record), geometry=_drawn(record), after=_shown(record_facts(record)))
+        yield Change(
+            ChangeAction.NEW, "zone", _label(record), geometry=_drawn(record), after=_shown(record_facts(record)), key=key_of(record)
+        )
     for zone, record in found.changed:
         before, after = _differing(zone, record)
-        yield Change(ChangeAction.CHANGED, "zone", _label(record), zone.pk, _drawn(record), before, after)
+        yield Change(ChangeAction.CHANGED, "zone", _label(record), zone.pk, _drawn(record), before, after, key_of(zone))
     for zone in found.vanished:
-        yield Change(ChangeAction.VANISHED, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
+        shown = _shown(zone_facts(zone))
+        yield Change(ChangeAction.VANISHED, "zone", _label(zone), zone.pk, zone.geometry, before=shown, key=key_of(zone))
     for zone, kept in found.kept:
         yield _kept(zone, kept)
 
@@ -153,9 +159,9 @@ def _not_read(record: UnreadRecord) -> Change:
 
 def _kept(zone: NoFlyZone, record: ZoneRecord | None) -> Change:
     if record is None:
-        return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
+        return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)), key=key_of(zone))
     before, after = _differing(zone, record)
-    return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before, after)
+    return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before, after, key_of(zone))
 
 
 def _differing(zone: NoFlyZone, record: ZoneRecord) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:

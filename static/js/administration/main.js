@@ -11,7 +11,7 @@ import { mountServiceAccounts } from "./service_accounts.js";
 import { mountSignIns } from "./sign_ins.js";
 import { mountUsers } from "./users.js";
 
-/** @typedef {"users" | "invitations" | "service-accounts" | "sign-ins" | "rules"} Tab */
+/** @typedef {"users" | "invitations" | "service-accounts" | "sign-ins" | "organisation" | "rules"} Tab */
 
 /** @type {Tab[]} */
 const TABS = ["users", "invitations", "service-accounts", "sign-ins", "organisation", "rules"];

@@ -1,11 +1,11 @@
 /** "Bring in data": choosing, dropping and sending files; an interrupted upload is resumed. */
 
 import { ApiError, post } from "../api.js";
-import { byId, h, keyedList } from "../dom.js";
+import { byId, h, icon, keyedList } from "../dom.js";
 import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { fileCard } from "./file_card.js";
-import { guessKind, HEAD_BYTES, setNameOf } from "./kinds.js";
+import { guessKind, HEAD_BYTES, setNameOf, whyNotSent } from "./kinds.js";
 import { createRememberedUploads, markOf } from "./remembered_uploads.js";
 import { sendFile, untilAnswered } from "./send_file.js";
 
@@ -108,6 +108,7 @@ class Uploads {
 
   /** @param {File[]} files */
   async #take(files) {
+    byId("notices").replaceChildren();
     for (const file of files) {
       const mark = markOf(file);
       const known = this.#items.find((item) => item.mark === mark);
@@ -116,7 +117,13 @@ class Uploads {
         if (known.phase === "lost") this.#start(known);
         continue;
       }
-      const kind = guessKind(file.name, await headOf(file));
+      const head = await headOf(file);
+      const why = whyNotSent(file.name, file.size, head);
+      if (why) {
+        refuseFile(why);
+        continue;
+      }
+      const kind = guessKind(file.name, head);
       /** @type {UploadItem} */
       const item = { ...blank(file.name, file.size), mark, file, kind, phase: "chosen" };
       if (kind === "zones" || kind === "assets") item.parameters.set_name = setNameOf(file.name);
@@ -212,6 +219,10 @@ function setKind(item, kind) {
   const set_name = item.parameters.set_name ?? setNameOf(item.name);
   item.parameters = kind === "zones" || kind === "assets" ? { set_name } : {};
 }
+
+/** @param {string} why in one sentence; nothing of the file is sent */
+const refuseFile = (why) =>
+  byId("notices").append(h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, why)));
 
 /** @param {File} file */
 async function headOf(file) {

@@ -6,7 +6,7 @@ import { numberText } from "../units.js";
 import { ACTIONS, factLines } from "./words.js";
 
 /** @import { Store } from "../store.js" */
-/** @import { Change, ImportsState, Proposal } from "./types.d.ts" */
+/** @import { Action, Change, ImportsState, Proposal } from "./types.d.ts" */
 
 /** @type {Record<string, string>} */
 const SUBJECTS = {
@@ -18,9 +18,21 @@ const SUBJECTS = {
   terrain: t("Terrain"),
 };
 
+/** @type {Record<string, string>} */
+const PLURALS = {
+  tower: t("Towers"),
+  line: t("Lines"),
+  railway: t("Railways"),
+  bridge: t("Bridges"),
+  zone: t("Zones"),
+  terrain: t("Terrain"),
+};
+
+/** @typedef {{ action: string, subject: string }} Filter */
 /**
  * @typedef {object} ChangeActs
- * @property {(action: string) => void} filter
+ * @property {(filter: Filter) => void} filter
+ * @property {(change: Change, isLeftOut: boolean) => void} leaveOut
  * @property {(change: Change | null) => void} point
  * @property {(change: Change) => void} show
  * @property {() => void} more
@@ -41,6 +53,13 @@ export function mountChanges(store, acts) {
     const isSelected = change.id === store.state.selected;
     find(element, "button").setAttribute("aria-expanded", String(isSelected));
     element.dataset.lit = String(change.id === store.state.lit);
+    const box = element.querySelector("input");
+    const { key } = change.properties;
+    if (box && key) {
+      box.checked = !store.state.excluded.includes(key);
+      /** @type {HTMLElement} */ (box.parentElement).hidden = store.state.current?.state !== "ready";
+      element.classList.toggle("left-out", !box.checked);
+    }
     const facts = element.querySelector(".change-facts");
     if (isSelected === !facts) {
       if (facts) facts.remove();
@@ -48,9 +67,14 @@ export function mountChanges(store, acts) {
     }
   }
 
-  store.listen(["current", "action"], ({ current, action }) => drawFilters(current, action, acts));
-  store.listen(["changes", "action", "listed", "lit", "selected"], ({ changes, action, listed }) => {
-    const wanted = action ? changes.filter((change) => change.properties.action === action) : changes;
+  store.listen(["current", "action", "subject"], ({ current, action, subject }) =>
+    drawTable(current, { action, subject }, acts),
+  );
+  store.listen(["current", "changes", "action", "subject", "listed", "lit", "selected", "excluded"], (state) => {
+    const { changes, action, subject, listed } = state;
+    const wanted = changes.filter(
+      ({ properties }) => (!action || properties.action === action) && (!subject || properties.subject === subject),
+    );
     draw(wanted.slice(0, listed));
     byId("more-changes").hidden = wanted.length <= listed;
   });
@@ -81,7 +105,17 @@ function row(change, acts) {
       h("span", { class: "caption" }, `${SUBJECTS[subject] ?? subject}, ${words}${shortOf(change.properties)}`),
     ),
   );
-  const element = h("li", {}, button);
+  const box = h("input", { class: "check", type: "checkbox", checked: true });
+  box.addEventListener("change", () => acts.leaveOut(change, !box.checked));
+  const name = label || SUBJECTS[subject] || subject;
+  const apply = h(
+    "label",
+    { class: "leave-out", title: t("Apply this change") },
+    box,
+    h("span", { class: "unseen" }, t("Apply: {name}", { name })),
+  );
+  const canLeaveOut = Boolean(change.properties.key) && action !== "not_read";
+  const element = h("li", {}, button, canLeaveOut && apply);
   for (const come of ["pointerenter", "focusin"]) element.addEventListener(come, () => acts.point(change));
   for (const go of ["pointerleave", "focusout"]) element.addEventListener(go, () => acts.point(null));
   return element;
@@ -128,37 +162,81 @@ function factsOf(properties) {
   );
 }
 
-/** @param {Proposal | null} current @param {string} action that is chosen @param {ChangeActs} acts */
-function drawFilters(current, action, acts) {
-  const place = byId("change-filters");
-  const difference = current?.difference ?? {};
-  const counted = Object.entries(ACTIONS).filter(([name]) => difference[name] > 0);
-  place.hidden = counted.length === 0;
-  const all = counted.reduce((sum, [name]) => sum + difference[name], 0);
-  const choices = [
-    { value: "", sign: "", words: t("All"), count: all },
-    ...counted.map(([value, { sign, short }]) => ({ value, sign, words: short, count: difference[value] })),
-  ];
-  /** @type {HTMLInputElement | null} */
-  const focused = place.querySelector("input:focus");
+/** Columns of the table; those of `ALWAYS` are shown also where nothing is in them. @type {(Action | "unchanged")[]} */
+const COLUMNS = ["new", "changed", "vanished", "kept", "not_read", "unchanged"];
+const ALWAYS = ["new", "changed", "vanished", "unchanged"];
+/** In the order of the network, towers first. */
+const KIND_ORDER = ["tower", "line", "railway", "bridge", "zone", "terrain"];
+
+/**
+ * Rows and columns of the table of a difference. A proposal of an earlier version has no numbers by kind: it has one row.
+ *
+ * @param {Pick<Proposal, "difference" | "summary">} proposal
+ * @returns {{ columns: (Action | "unchanged")[], rows: { kind: string, words: string, counts: Record<string, number> }[] }}
+ */
+export function tableOf({ difference, summary }) {
+  const byKind = summary.by_kind ?? {};
+  const kinds = Object.keys(byKind).sort((one, other) => KIND_ORDER.indexOf(one) - KIND_ORDER.indexOf(other));
+  const rows = kinds.map((kind) => ({ kind, words: PLURALS[kind] ?? kind, counts: byKind[kind] }));
+  const total = { kind: "", words: rows.length ? t("All") : t("Rows"), counts: difference };
+  const columns = COLUMNS.filter((name) => ALWAYS.includes(name) || difference[name] > 0);
+  return { columns, rows: rows.length === 1 && !difference.not_read ? rows : [...rows, total] };
+}
+
+/** @param {Action | "unchanged"} name */
+function columnHead(name) {
+  if (name === "unchanged") return t("Unchanged");
+  const { sign, short } = ACTIONS[name];
+  return [h("b", { class: name, "aria-hidden": "true" }, sign), " ", name === "vanished" ? t("Removed") : short];
+}
+
+/** @param {Proposal | null} current @param {Filter} chosen @param {ChangeActs} acts */
+function drawTable(current, chosen, acts) {
+  const place = byId("change-table");
+  const focused = place.querySelector("button:focus")?.getAttribute("data-cell");
+  place.hidden = !current || Object.keys(current.difference).length === 0;
+  if (!current || place.hidden) return;
+  const { columns, rows } = tableOf(current);
+  /** @param {string} kind @param {string} words @param {Action | "unchanged"} name @param {number} count */
+  function cell(kind, words, name, count) {
+    if (!count || name === "unchanged") return h("td", {}, count ? numberText(count) : "–");
+    const isChosen = chosen.action === name && chosen.subject === kind;
+    const choose = () => acts.filter(isChosen ? { action: "", subject: "" } : { action: name, subject: kind });
+    const label = `${words}, ${ACTIONS[name].words}: ${numberText(count)}`;
+    const properties = {
+      type: "button",
+      class: "cell",
+      "aria-pressed": `${isChosen}`,
+      "aria-label": label,
+      onclick: choose,
+    };
+    return h("td", {}, h("button", { ...properties, "data-cell": `${kind} ${name}` }, numberText(count)));
+  }
   setChildren(
     place,
-    h("legend", { class: "unseen" }, t("Which changes")),
-    choices.map(({ value, sign, words, count }) => {
-      const choose = () => acts.filter(value);
-      const mark = sign && h("b", { class: value, "aria-hidden": "true" }, sign);
-      return h(
-        "label",
+    h("caption", { class: "unseen" }, t("Changes by kind; a number filters the list")),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
         {},
-        h("input", { type: "radio", name: "change-filter", value, checked: action === value, onchange: choose }),
+        h("td", {}),
+        columns.map((name) => h("th", { scope: "col" }, columnHead(name))),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      rows.map(({ kind, words, counts }) =>
         h(
-          "span",
-          { class: "segment" },
-          h("span", { class: "change-word" }, mark, words),
-          h("small", {}, numberText(count)),
+          "tr",
+          { class: kind ? "" : "total" },
+          h("th", { scope: "row" }, words),
+          columns.map((name) => cell(kind, words, name, counts[name] ?? 0)),
         ),
-      );
-    }),
+      ),
+    ),
   );
-  if (focused) [...place.querySelectorAll("input")].find((input) => input.value === focused.value)?.focus();
+  if (focused) find(place, `[data-cell="${focused}"]`, HTMLElement).focus();
 }

@@ -1,5 +1,7 @@
 /** Kind of data of a file, guessed from its name and its first bytes; a curator can change it. */
 
+import { t } from "../text.js";
+
 /** @import { ImportKind } from "./types.d.ts" */
 
 /** @type {[RegExp, ImportKind][]} */
@@ -16,6 +18,38 @@ const ZONE_WORDS =
 const ASSET_WORDS = /"(power|voltage|voltages_v|railway|bridge|cables)"\s*:|"(LineString|MultiLineString|Point)"/;
 
 export const HEAD_BYTES = 4096;
+
+/** First bytes of formats that no reader takes: inspection/importers/foreign_formats.py. @type {[string, string][]} */
+const FOREIGN = [
+  ["\x89PNG\r\n\x1a\n", "PNG"],
+  ["\xff\xd8\xff", "JPEG"],
+  ["GIF8", "GIF"],
+  ["RIFF", "WebP, WAV, AVI"],
+  ["%PDF-", "PDF"],
+  ["MZ", "EXE"],
+  ["\x7fELF", "ELF"],
+  ["AC10", "DWG"],
+  ["7z\xbc\xaf\x27\x1c", "7z"],
+  ["Rar\x21\x1a", "RAR"],
+];
+const EMPTY_COLLECTION = /^\s*\{[^[\]]*"features"\s*:\s*\[\s*\]/;
+
+/**
+ * One sentence on why a file is not sent at all; null for one that may hold data.
+ *
+ * @param {string} name
+ * @param {number} size
+ * @param {Uint8Array} head the first bytes
+ */
+export function whyNotSent(name, size, head) {
+  if (size === 0) return t("“{name}” is empty: it has no bytes.", { name });
+  const text = String.fromCharCode(...head.subarray(0, HEAD_BYTES));
+  const format = FOREIGN.find(([beginning]) => text.startsWith(beginning))?.[1];
+  if (format)
+    return t("“{name}” is a {format} file, which holds none of the data that Spanwise reads.", { name, format });
+  if (EMPTY_COLLECTION.test(text)) return t("“{name}” is an empty collection: it has no features.", { name });
+  return null;
+}
 
 /** @param {string} name @param {Uint8Array} [head] the first bytes @returns {ImportKind} */
 export function guessKind(name, head = new Uint8Array()) {

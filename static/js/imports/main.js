@@ -14,7 +14,7 @@ import { createChangesLayer, positionsOf } from "./changes_layer.js";
 import { mountList, titleOf } from "./list.js";
 import { mountOverpassBox } from "./overpass_box.js";
 import { mountProposal } from "./proposal.js";
-import { isOpen, STATES } from "./words.js";
+import { isOpen, isTouched, STATES } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Ground, ZoneSet, ZoneSetPage, ZoneSetVersion, ZoneSetVersionPage } from "../api_types.d.ts" */
@@ -30,8 +30,8 @@ const LIST_PAGE = 50;
 const CHANGES_PAGE = 1_000;
 const LISTED = 200; // rows of a long difference at a time; the map has them all
 
-/** @type {Pick<ImportsState, "changes" | "listed" | "action" | "lit" | "selected">} */
-const NO_CHANGES = { changes: [], listed: LISTED, action: "", lit: null, selected: null };
+/** @type {Pick<ImportsState, "changes" | "listed" | "action" | "subject" | "excluded" | "lit" | "selected">} */
+const NO_CHANGES = { changes: [], listed: LISTED, action: "", subject: "", excluded: [], lit: null, selected: null };
 /** @type {ImportsState} */
 const FIRST_STATE = { proposals: null, next: null, current: null, busy: null, ...NO_CHANGES };
 const store = createStore(FIRST_STATE);
@@ -211,7 +211,9 @@ function previewOf(proposal) {
 const drawn = () => [...store.state.changes, ...previewOf(store.state.current)];
 
 function showChanges() {
-  changesLayer?.show(drawn(), store.state.action);
+  const { action, subject } = store.state;
+  const shown = drawn().filter(({ properties }) => !subject || properties.subject === subject);
+  changesLayer?.show(shown, action);
 }
 
 /** @param {Change | undefined} change */
@@ -274,8 +276,20 @@ const acts = {
   },
   apply: (overwrites, seen) =>
     decide("apply", t("Not applied."), (id) =>
-      post(`/imports/${id}/apply`, { parameters: { replace_edited: overwrites, ...(seen.length ? { seen } : {}) } }),
+      post(`/imports/${id}/apply`, {
+        parameters: {
+          replace_edited: overwrites,
+          ...(seen.length ? { seen } : {}),
+          ...(store.state.excluded.length ? { excluded: store.state.excluded } : {}),
+        },
+      }),
     ),
+  leftOut(overwrites) {
+    const { changes, excluded } = store.state;
+    const keys = new Set(excluded);
+    return changes.filter(({ properties: { action, key } }) => key && keys.has(key) && isTouched(action, overwrites))
+      .length;
+  },
   async discard() {
     const { current } = store.state;
     await decide("discard", t("Not discarded."), (id) => post(`/imports/${id}/discard`, {}));
@@ -304,6 +318,11 @@ const acts = {
     });
     return found;
   },
+  undo: ({ id }) =>
+    attempt(t("Not undone."), async () => {
+      const answer = await post(`/imports/${id}/undo`, {});
+      await openProposal(/** @type {Answer<Proposal>} */ (answer).data.id);
+    }),
   rollBack: (set, version) =>
     attempt(t("Not rolled back."), async () => {
       const answer = await post(`/zone-sets/${set.id}/roll-back`, { version });
@@ -317,10 +336,14 @@ mountList(store, {
   more: () => attempt(t("Not loaded."), () => loadList({ more: true })),
 });
 mountChanges(store, {
-  filter(action) {
-    store.update({ action, selected: null, listed: LISTED });
+  filter({ action, subject }) {
+    store.update({ action, subject, selected: null, listed: LISTED });
     map.ring([]);
     showChanges();
+  },
+  leaveOut({ properties: { key } }, isLeftOut) {
+    const others = store.state.excluded.filter((known) => known !== key);
+    store.update({ excluded: isLeftOut && key ? [...others, key] : others });
   },
   point: (change) => light(change?.id ?? null),
   show: select,

@@ -9,6 +9,8 @@ import { jobLine } from "./job_line.js";
 import { stateChip, titleOf } from "./list.js";
 import { notRead } from "./not_read.js";
 import { otherSystem } from "./other_system.js";
+import { regionChoice } from "./region_choice.js";
+import { whereNext } from "./where_next.js";
 import {
   differenceSentence,
   isOpen,
@@ -46,6 +48,7 @@ class ProposalPanel {
   constructor(store, acts) {
     this.#acts = acts;
     store.listen(["current", "busy"], ({ current, busy }) => this.#show(current, busy));
+    store.listen(["excluded"], ({ current, busy }) => current && this.#drawDecision(current, busy));
   }
 
   /** @param {Proposal | null} current @param {string | null} busy */
@@ -119,6 +122,26 @@ class ProposalPanel {
       this.#overwriteChoice(proposal),
       this.#notRead(proposal),
       facts(proposal),
+      Boolean(proposal.parameters.excluded?.length) &&
+        h(
+          "p",
+          { class: "caption" },
+          tn(
+            proposal.parameters.excluded?.length ?? 0,
+            "{count} change was left out.",
+            "{count} changes were left out.",
+          ),
+        ),
+      state === "applied" && whereNext(proposal),
+      state === "applied" &&
+        ["osm", "assets"].includes(kind) &&
+        !proposal.parameters.undo &&
+        h(
+          "button",
+          { type: "button", class: "button", id: "undo-import", onclick: () => this.#acts.undo(proposal) },
+          icon("undo-2", "small"),
+          t("Undo this import"),
+        ),
       kind === "zones" && state === "applied" && summary.set && versions(summary.set, this.#acts),
       Object.values(difference).some((count) => count > MAX_LISTED) &&
         h("p", { class: "caption" }, t("Showing the first {count} per group.", { count: numberText(MAX_LISTED) })),
@@ -155,7 +178,7 @@ class ProposalPanel {
     );
     if (state === "refused") return [h("div", { class: "foot-buttons" }, discard)];
     if (state !== "ready") return [];
-    const count = touched(difference, { overwrites: this.#overwrites });
+    const count = touched(difference, { overwrites: this.#overwrites }) - this.#acts.leftOut(this.#overwrites);
     const needsMapping = Boolean(summary.needs_mapping);
     const isIdle = needsMapping || (count === 0 && Object.keys(difference).length > 0 && !summary.external_ids);
     const unseen = (summary.not_read ?? []).filter(({ place }) => !this.#seen.has(place)).length;
@@ -216,25 +239,14 @@ function askToOverwrite(kept, apply) {
 }
 
 /** @param {Proposal} proposal @param {ProposalActs["readAgain"]} readAgain */
-function leaveOut({ kind, faults, parameters, size_bytes }, readAgain) {
-  if (!["assets", "zones"].includes(kind) || parameters.leave_out_faulty || size_bytes === null || !faults.length)
-    return null;
+function leaveOut({ kind, summary, parameters, size_bytes }, readAgain) {
+  if (!summary.can_leave_out || parameters.leave_out_faulty || size_bytes === null) return null;
   const again = () => readAgain({ leave_out_faulty: true });
   return h(
     "button",
     { type: "button", class: "button", id: "leave-out", onclick: again },
     kind === "zones" ? t("Read again without the faulty records") : t("Read again without the faulty rows"),
   );
-}
-
-/** Another difference: the file is read again for it. @param {Proposal} proposal @param {ProposalActs["readAgain"]} readAgain */
-function regionChoice({ kind, state, parameters }, readAgain) {
-  if (kind !== "osm" || state !== "ready") return null;
-  const checked = Boolean(parameters.replace_region);
-  const box = h("input", { class: "check", type: "checkbox", id: "replace-region", checked });
-  box.addEventListener("change", () => readAgain({ replace_region: box.checked }));
-  const title = t("Also what another file brought in vanishes where this one covers the ground and does not have it");
-  return h("label", { class: "overwrite", title }, box, h("span", {}, t("Replace the whole region with this file")));
 }
 
 /** @param {Proposal} proposal */

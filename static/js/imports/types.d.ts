@@ -37,12 +37,18 @@ export interface Summary {
   layer?: string;
   crs?: string;
   format?: string;
+  /** of a refused file: it can be read without the records that have the faults */
+  can_leave_out?: boolean;
   /** of an asset file: how many assets get one */
   external_ids?: number;
   lowest_m?: number;
   highest_m?: number;
   vertical_datum?: string;
   not_read?: UnreadRecord[];
+  /** numbers of changes of each kind of asset, by action */
+  by_kind?: Record<string, Record<string, number>>;
+  /** how many assets of each kind “Replace the whole region” would remove as well */
+  replaced_region_removes?: Record<string, number>;
   [name: string]: unknown;
 }
 
@@ -65,7 +71,13 @@ export interface Mapping {
 
 export type Proposal = Omit<ApiProposal, "summary" | "parameters" | "provenance"> & {
   summary: Summary;
-  parameters: { crs?: string; replace_region?: boolean; leave_out_faulty?: boolean } & Parameters;
+  parameters: {
+    crs?: string;
+    replace_region?: boolean;
+    leave_out_faulty?: boolean;
+    excluded?: string[];
+    undo?: number;
+  } & Parameters;
   provenance: { licence?: string; attribution?: string; source_address?: string; fetched_at?: string };
 };
 
@@ -84,6 +96,10 @@ export interface ImportsState {
   /** rows of a long difference that are listed */
   listed: number;
   action: string;
+  /** kind of asset, or zone, that the list is narrowed to */
+  subject: string;
+  /** keys of changes that are left out */
+  excluded: string[];
   lit: number | null;
   selected: number | null;
 }
@@ -94,11 +110,14 @@ export interface ProposalActs {
   cancel(proposal: Proposal): Promise<void>;
   /** seen: places of the records that are not read */
   apply(overwrites: boolean, seen: string[]): Promise<void>;
+  /** how many of the counted changes are left out */
+  leftOut(overwrites: boolean): number;
   discard(): Promise<void>;
   readAgain(parameters: Parameters): Promise<void>;
   place(position: number[]): void;
   versions(name: string): Promise<{ set: ZoneSet | null; rows: ZoneSetVersion[] }>;
   rollBack(set: ZoneSet, version: number): Promise<boolean>;
+  undo(proposal: Proposal): Promise<boolean>;
 }
 
 /** A file on its way to the server. */

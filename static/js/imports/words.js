@@ -83,9 +83,13 @@ export function terrainSentence({ lowest_m, highest_m, vertical_datum }, differe
  * @param {{ overwrites?: boolean }} [how]
  */
 export function touched(difference, { overwrites = false } = {}) {
-  const counted = ["new", "changed", "vanished", ...(overwrites ? ["kept"] : [])];
+  const counted = Object.keys(difference).filter((action) => isTouched(action, overwrites));
   return counted.reduce((sum, action) => sum + (difference[action] ?? 0), 0);
 }
+
+/** Whether changes of this action are written. @param {string} action @param {boolean} overwrites */
+export const isTouched = (action, overwrites) =>
+  ["new", "changed", "vanished", ...(overwrites ? ["kept"] : [])].includes(action);
 
 /** @param {number | null | undefined} bytes */
 export function sizeText(bytes) {
@@ -178,7 +182,7 @@ const isEmpty = (value) =>
   value === "" ||
   (typeof value === "object" && Object.keys(value).length === 0);
 
-const NOT_STATED = new Set(["words", "needs_mapping", "datum_is_stated", "external_ids"]); // shown elsewhere
+const NOT_STATED = new Set(["words", "needs_mapping", "datum_is_stated", "external_ids", "can_leave_out"]); // shown elsewhere
 
 /** Figures of a file for display: only numbers and short texts. @param {Summary} summary */
 export function summaryLines(summary) {

@@ -117,7 +117,7 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
     page.mouse.move(place["x"], place["y"])
     expect(page.locator("#changes li", has_text="West")).to_have_attribute("data-lit", "true")
     page.mouse.move(0, 0)
-    page.get_by_role("radio", name="Changed").check(force=True)
+    page.get_by_role("button", name="Zones, changed: 1").click()
     expect(page.get_by_role("list", name="Changes").get_by_role("listitem")).to_have_count(1)
     page.get_by_role("button", name="North").click()
     expect(page.get_by_text("dashed on the map")).to_be_visible()

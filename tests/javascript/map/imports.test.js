@@ -1,11 +1,14 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
+import { tableOf } from "../../../static/js/imports/changes.js";
 import { placeOfSign } from "../../../static/js/imports/changes_layer.js";
 import { mappingOf, meaningsOf, withMeaning } from "../../../static/js/imports/column_mapping.js";
-import { guessKind, setNameOf } from "../../../static/js/imports/kinds.js";
+import { guessKind, setNameOf, whyNotSent } from "../../../static/js/imports/kinds.js";
 import { areaKm2 } from "../../../static/js/imports/overpass_box.js";
+import { removedText } from "../../../static/js/imports/region_choice.js";
 import { createRememberedUploads, markOf } from "../../../static/js/imports/remembered_uploads.js";
+import { viewOfExtent } from "../../../static/js/imports/where_next.js";
 import {
   differenceSentence,
   factLines,
@@ -212,4 +215,42 @@ test("a kind that is chosen wins over a column, and none is none", () => {
 test("a role belongs to one column alone", () => {
   assert.deepEqual(withMeaning({ a: "voltage:V", b: "ref" }, "c", "voltage:kV"), { b: "ref", c: "voltage:kV" });
   assert.deepEqual(withMeaning({ a: "name" }, "a", ""), {});
+});
+
+test("an empty file, a picture and an empty collection get one sentence each before they are sent", () => {
+  assert.equal(whyNotSent("a.osm", 0, bytes("")), "“a.osm” is empty: it has no bytes.");
+  const png = new Uint8Array([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0, 0]);
+  assert.match(whyNotSent("a.geojson", 10, png), /^“a.geojson” is a PNG file, which holds none/);
+  const empty = '{"type": "FeatureCollection", "features": [ ]}';
+  assert.equal(
+    whyNotSent("a.json", empty.length, bytes(empty)),
+    "“a.json” is an empty collection: it has no features.",
+  );
+  for (const text of ['{"type": "FeatureCollection", "features": [{"type"', "<osm>", "AC A", "PK\u0003\u0004"])
+    assert.equal(whyNotSent("a", text.length, bytes(text)), null);
+});
+
+test("the table of a difference has a row for each kind and one for all", () => {
+  const counts = { new: 1, changed: 0, vanished: 2, kept: 0, unchanged: 5 };
+  const difference = { new: 3, changed: 0, vanished: 2, kept: 0, unchanged: 6 };
+  const { columns, rows } = tableOf({ difference, summary: { by_kind: { line: counts, tower: counts } } });
+  assert.deepEqual(columns, ["new", "changed", "vanished", "unchanged"]);
+  assert.deepEqual(
+    rows.map(({ words }) => words),
+    ["Towers", "Lines", "All"],
+  );
+  assert.equal(rows[2].counts, difference);
+  assert.deepEqual(
+    tableOf({ difference: { ...difference, kept: 1 }, summary: {} }).rows.map(({ words }) => words),
+    ["Rows"],
+  );
+});
+
+test("what a replaced region removes is named by kind", () => {
+  assert.equal(removedText({ tower: 12, line: 1 }), "12 towers, 1 line");
+  assert.equal(removedText({}), "");
+});
+
+test("an applied import is shown in the middle of the map", () => {
+  assert.match(viewOfExtent([9, 47, 10, 48]), /^#map=[\d.]+\/47\.5\d*\/9\.5\d*$/);
 });
