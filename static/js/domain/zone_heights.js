@@ -69,8 +69,14 @@ export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
   );
 }
 
+/** What planning makes of a limit that is not stated. */
+const OPEN = {
+  lower: t("Not stated: plans count the zone from the ground."),
+  upper: t("Not stated: plans count the zone without an upper end."),
+};
+
 /**
- * { element, read() } for one limit; read gives { value_m, reference } or null for "not stated".
+ * { element, set(), read() } for one limit; read gives { value_m, reference } or null for "not stated".
  *
  * @param {"lower" | "upper"} side
  * @param {string} words
@@ -104,11 +110,13 @@ export function limitField(side, words, limit) {
     ),
   );
   const metres = h("p", { class: "caption", hidden: true });
+  const open = h("p", { class: "caption" }, OPEN[side]);
   const factor = () => (reference.value === "STD" ? FLIGHT_LEVEL_M : unit.value === "ft" ? FOOT_M : 1);
   const adapt = () => {
     value.disabled = reference.value === "";
     value.required = reference.value !== "";
     unit.disabled = reference.value === "" || reference.value === "STD";
+    open.hidden = reference.value !== "";
     metres.hidden = value.disabled || value.value === "" || factor() === 1;
     metres.textContent = `${value.value}\u00a0${reference.value === "STD" ? t("hundred feet of pressure altitude") : "ft"} = ${heightText(Number(value.value) * factor())}`;
   };
@@ -121,7 +129,16 @@ export function limitField(side, words, limit) {
       h("legend", {}, words),
       h("div", { class: "limit-row" }, value, unit, reference),
       metres,
+      open,
     ),
+    /** @param {Limit | null} to */
+    set(to) {
+      reference.value = to?.reference ?? "";
+      unit.value = "m";
+      value.value = to ? `${to.value_m}` : "";
+      adapt();
+      value.dispatchEvent(new Event("input", { bubbles: true }));
+    },
     read() {
       if (!reference.value || value.value === "") return null;
       return { value_m: Math.round(Number(value.value) * factor() * 100) / 100, reference: reference.value };

@@ -27,8 +27,10 @@ const KIND_WORDS = () => ({
 
 /** What the codes of ED-269 and ED-318 mean. @returns {Record<string, string>} */
 const CODES = () => ({
+  USPACE: t("U-space"),
   PROHIBITED: t("prohibited"),
   REQ_AUTHORISATION: t("authorisation required"),
+  REQ_AUTHORIZATION: t("authorisation required"),
   CONDITIONAL: t("conditional"),
   NO_RESTRICTION: t("no restriction"),
   AIR_TRAFFIC: t("air traffic"),
@@ -39,6 +41,7 @@ const CODES = () => ({
   NOISE: t("noise"),
   FOREIGN_TERRITORY: t("foreign territory"),
   EMERGENCY: t("emergency"),
+  DAR: t("dynamic airspace reconfiguration"),
   OTHER: t("other"),
 });
 

@@ -2,13 +2,36 @@
 
 import { h } from "../dom.js";
 import { limitField } from "../domain/zone_heights.js";
+import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
 import { scheduleEditor } from "./schedule_editor.js";
 
-/** @import { ZoneDetailFeature, ZoneDetailProperties } from "../api_types.d.ts" */
+/** @import { Limit, ZoneDetailFeature, ZoneDetailProperties } from "../api_types.d.ts" */
 /** @import { Facts, RecordForm } from "../ground/types.d.ts" */
 
-const RESTRICTIONS = ["PROHIBITED", "REQ_AUTHORISATION", "CONDITIONAL", "NO_RESTRICTION"];
+/** Of ED-269; ED-318 has USPACE as well, and spells REQ_AUTHORIZATION. */
+const RESTRICTIONS = ["PROHIBITED", "REQ_AUTHORISATION", "CONDITIONAL", "NO_RESTRICTION", "USPACE"];
+/** Of ED-269 and ED-318; DAR is of ED-318 alone, FOREIGN_TERRITORY of ED-269. */
+const REASONS = [
+  "AIR_TRAFFIC",
+  "SENSITIVE",
+  "PRIVACY",
+  "POPULATION",
+  "NATURE",
+  "NOISE",
+  "FOREIGN_TERRITORY",
+  "EMERGENCY",
+  "DAR",
+  "OTHER",
+];
+/** @type {[string, Limit | null][]} upper limits, from the ground */
+const QUICK_HEIGHTS = [
+  [t("Ground to 50 m"), { value_m: 50, reference: "AGL" }],
+  [t("Ground to 120 m"), { value_m: 120, reference: "AGL" }],
+  [t("Ground, no upper end"), null],
+];
+const GROUND = /** @type {Limit} */ ({ value_m: 0, reference: "AGL" });
+
 /** @param {string} id @param {string} words @param {HTMLElement} input */
 const field = (id, words, input) => h("div", { class: "field" }, h("label", { for: id }, words), input);
 
@@ -30,23 +53,8 @@ export function zoneForm(feature, _choice, kept) {
     value: facts.name ?? "",
     autocomplete: "off",
   });
-  const restriction = h("input", {
-    class: "input",
-    id: "zone-restriction",
-    type: "text",
-    maxlength: 100,
-    list: "restrictions",
-    value: facts.restriction ?? "",
-    autocomplete: "off",
-  });
-  const reason = h("input", {
-    class: "input",
-    id: "zone-reason",
-    type: "text",
-    maxlength: 255,
-    value: facts.reason ?? "",
-    autocomplete: "off",
-  });
+  const restriction = restrictionField(facts.restriction ?? "");
+  const reason = reasonField(facts.reason ?? "");
   const lower = limitField("lower", t("Lower limit"), facts.lower_limit ?? null);
   const upper = limitField("upper", t("Upper limit"), facts.upper_limit ?? null);
   const times = scheduleEditor(facts.schedule ?? null);
@@ -55,16 +63,18 @@ export function zoneForm(feature, _choice, kept) {
       "form",
       { class: "record-form", onsubmit: (event) => event.preventDefault() },
       field("zone-name", t("Name"), name),
+      restriction.element,
+      reason.element,
       h(
         "div",
-        { class: "pair" },
-        field("zone-restriction", t("Restriction"), restriction),
-        field("zone-reason", t("Reason"), reason),
-      ),
-      h(
-        "datalist",
-        { id: "restrictions" },
-        RESTRICTIONS.map((value) => h("option", { value })),
+        { class: "quick-heights", role: "group", "aria-label": t("Heights in one step") },
+        QUICK_HEIGHTS.map(([words, limit]) => {
+          const set = () => {
+            lower.set(GROUND);
+            upper.set(limit);
+          };
+          return h("button", { type: "button", class: "text-button", onclick: set }, words);
+        }),
       ),
       upper.element,
       lower.element,
@@ -72,11 +82,77 @@ export function zoneForm(feature, _choice, kept) {
     ),
     read: () => ({
       name: name.value.trim(),
-      restriction: restriction.value.trim(),
-      reason: reason.value.trim(),
+      restriction: restriction.read(),
+      reason: reason.read(),
       lower_limit: lower.read(),
       upper_limit: upper.read(),
       schedule: times.read(),
     }),
   };
+}
+
+/**
+ * What a stored restriction chooses in the list: its own code, that of the other standard, or itself where it is of neither.
+ *
+ * @param {string} value
+ */
+export function restrictionChoices(value) {
+  const spelt = value === "REQ_AUTHORIZATION" ? "REQ_AUTHORISATION" : value;
+  const others = spelt && !RESTRICTIONS.includes(spelt) ? [spelt] : [];
+  return { chosen: spelt, values: [...RESTRICTIONS, ...others] };
+}
+
+/** What planning makes of a restriction. @param {string} value */
+export function restrictionHint(value) {
+  if (value === "") return t("Not stated: plans keep clear of it, as of a prohibited zone.");
+  return value === "NO_RESTRICTION"
+    ? t("Plans keep clear of it all the same: delete it where you may fly.")
+    : t("Plans keep clear of it.");
+}
+
+/** @param {string} value */
+function restrictionField(value) {
+  const { chosen, values } = restrictionChoices(value);
+  const input = h(
+    "select",
+    { class: "input", id: "zone-restriction", "aria-describedby": "zone-restriction-hint" },
+    ["", ...values].map((code) =>
+      h("option", { value: code, selected: code === chosen }, code ? plainWords(code) : t("not stated")),
+    ),
+  );
+  const hint = h("p", { class: "caption", id: "zone-restriction-hint" }, restrictionHint(chosen));
+  input.addEventListener("input", () => {
+    hint.textContent = restrictionHint(input.value);
+  });
+  const element = h("div", {}, field("zone-restriction", t("Restriction"), input), hint);
+  return { element, read: () => (input.value === chosen ? value : input.value) };
+}
+
+/** The reasons of a stored text, and what of it is of neither standard. @param {string} text */
+export function reasonsOf(text) {
+  const parts = text.split(",").map((part) => part.trim());
+  const codes = parts.filter((part) => REASONS.includes(part));
+  return { codes, other: parts.filter((part) => part && !REASONS.includes(part)).join(", ") };
+}
+
+/** @param {string} text */
+function reasonField(text) {
+  const { codes, other } = reasonsOf(text);
+  const boxes = REASONS.map((code) => ({
+    code,
+    box: h("input", { class: "check", type: "checkbox", checked: codes.includes(code) }),
+  }));
+  const element = h(
+    "fieldset",
+    { class: "zone-reasons" },
+    h("legend", {}, t("Reason")),
+    boxes.map(({ code, box }) => h("label", {}, box, h("span", {}, plainWords(code)))),
+    other && h("p", { class: "caption" }, t("As the source states it: {reason}", { reason: other })),
+  );
+  const read = () => {
+    const now = boxes.filter(({ box }) => box.checked).map(({ code }) => code);
+    const isSame = now.length === codes.length && now.every((code) => codes.includes(code));
+    return isSame ? text : [...now, other].filter(Boolean).join(", ");
+  };
+  return { element, read };
 }

@@ -7,7 +7,8 @@ import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
 import { coordinateText, lengthText, minutesAheadOfUtc, whenText, zoneText } from "../units.js";
-import { zoneForm } from "./form.js";
+import { restrictionHint, zoneForm } from "./form.js";
+import { mountImportButton } from "./import_button.js";
 import { weekDrawing } from "./schedule_editor.js";
 import { mountSetsPanel, validityText } from "./sets_panel.js";
 
@@ -59,6 +60,7 @@ function details({ properties }) {
         .filter(Boolean)
         .join(" · ") || t("Restriction not stated"),
     ),
+    h("p", { class: "caption" }, restrictionHint(properties.restriction ?? "")),
     h(
       "div",
       { class: "band" },
@@ -154,7 +156,12 @@ function showSet() {
   );
 }
 
+const importButton = byId("zone-import");
+importButton.hidden = !records.page.canCurate;
+mountImportButton(importButton, byId("zone-import-file", HTMLInputElement));
+
 const sets = mountSetsPanel({
+  askFile: () => importButton.click(),
   canCurate: records.page.canCurate,
   showZones(set) {
     zoneSet = set;

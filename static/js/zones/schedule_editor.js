@@ -207,6 +207,7 @@ class ScheduleEditor {
     const label = t("{side}, UTC", { side: words });
     const value = timeToField(entry[`${which}Time`]);
     const time = h("input", { class: "input", type: "time", "aria-label": label, value, disabled: chosen !== "" });
+    const local = h("span", { class: "caption" }, chosen ? "" : localText(entry[`${which}Time`]));
     const takeEvent = () => {
       entry[`${which}Event`] = /** @type {ScheduleEntry["startEvent"]} */ (event.value || null);
       entry[`${which}Time`] = event.value ? null : which === "start" ? "08:00:00Z" : "18:00:00Z";
@@ -221,6 +222,7 @@ class ScheduleEditor {
       { class: "field" },
       h("span", { class: "field-label" }, label),
       h("div", { class: "time-row" }, time, event),
+      local,
     );
   }
 
@@ -247,4 +249,15 @@ function clockWords() {
     "From and until are by the clock of {zone}. Hours of the week are UTC, as sources state them: they do not move with summer time.",
     { zone },
   );
+}
+
+/** "10:00 here": a time of day of UTC by the reader's clock of today. @param {string | null | undefined} time "08:00:00Z" */
+export function localText(time) {
+  const found = /^(\d\d):(\d\d)/.exec(time ?? "");
+  if (!found) return "";
+  const ahead = minutesAheadOfUtc(Date.now());
+  if (!ahead) return "";
+  const minutes = (Number(found[1]) * 60 + Number(found[2]) + ahead + 2_880) % 1_440;
+  const clock = [Math.floor(minutes / 60), minutes % 60].map((part) => `${part}`.padStart(2, "0"));
+  return t("{time} local today", { time: clock.join(":") });
 }

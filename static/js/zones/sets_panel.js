@@ -17,7 +17,7 @@ export const validityText = ({ valid_from: from, valid_until: until }) =>
     .filter(Boolean)
     .join(" ");
 
-/** @typedef {{ canCurate: boolean, showZones: (set: ZoneSet) => void }} SetsOptions */
+/** @typedef {{ canCurate: boolean, askFile: () => void, showZones: (set: ZoneSet) => void }} SetsOptions */
 
 /** @param {SetsOptions} options */
 export const mountSetsPanel = (options) => new SetsPanel(options);
@@ -25,13 +25,15 @@ export const mountSetsPanel = (options) => new SetsPanel(options);
 class SetsPanel {
   #canCurate;
   #showZones;
+  #askFile;
   #place = byId("zone-sets");
   /** @type {ZoneSet[]} */
   #sets = [];
 
   /** @param {SetsOptions} options */
-  constructor({ canCurate, showZones }) {
+  constructor({ canCurate, askFile, showZones }) {
     this.#canCurate = canCurate;
+    this.#askFile = askFile;
     this.#showZones = showZones;
   }
 
@@ -75,7 +77,18 @@ class SetsPanel {
     setChildren(button, icon("plus", "small"), t("Subscribe to a zone source"));
     setChildren(
       this.#place,
-      this.#canCurate && h("section", { class: "panel-section" }, button),
+      this.#canCurate &&
+        h(
+          "section",
+          { class: "panel-section zone-sources" },
+          h(
+            "button",
+            { type: "button", class: "button", onclick: this.#askFile },
+            icon("upload", "small"),
+            t("Import a file"),
+          ),
+          button,
+        ),
       this.#sets.length
         ? h(
             "div",
@@ -95,7 +108,6 @@ class SetsPanel {
         { class: "empty" },
         h("strong", {}, t("No sets yet.")),
         h("span", {}, t("Bring in an ED-269, ED-318, OpenAir or GeoJSON file, or have one fetched.")),
-        this.#canCurate && h("a", { class: "button", href: "/imports" }, t("Import a file")),
       ),
     );
   }

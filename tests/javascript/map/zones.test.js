@@ -11,6 +11,8 @@ import {
   weekOf,
 } from "../../../static/js/domain/schedule.js";
 import { heightsText } from "../../../static/js/domain/zone_heights.js";
+import { reasonsOf, restrictionChoices, restrictionHint } from "../../../static/js/zones/form.js";
+import { localText } from "../../../static/js/zones/schedule_editor.js";
 
 const entry = (rest) => ({ day: ["MON"], startTime: null, startEvent: null, endTime: null, endEvent: null, ...rest });
 const week = (...schedule) => weekOf({ startDateTime: null, endDateTime: null, schedule });
@@ -67,4 +69,29 @@ test("heights are told with what they count from, and what is not stated as such
     "From 300\u00a0m above sea level, upper limit not stated",
   );
   assert.equal(heightsText({ lower_limit: null, upper_limit: null }), "Heights not stated");
+});
+
+test("a restriction of either standard is in the list, and what a source says beside them stays", () => {
+  assert.equal(restrictionChoices("REQ_AUTHORIZATION").chosen, "REQ_AUTHORISATION");
+  assert.equal(restrictionChoices("USPACE").values.length, 5);
+  assert.deepEqual(restrictionChoices("Danger area").values.slice(-1), ["Danger area"]);
+  assert.deepEqual(restrictionChoices("").values, restrictionChoices("PROHIBITED").values);
+});
+
+test("a restriction says what planning makes of it", () => {
+  assert.equal(restrictionHint(""), "Not stated: plans keep clear of it, as of a prohibited zone.");
+  assert.match(restrictionHint("NO_RESTRICTION"), /^Plans keep clear of it all the same/);
+  assert.equal(restrictionHint("CONDITIONAL"), "Plans keep clear of it.");
+});
+
+test("reasons are codes of the standards, and the source's own words beside them", () => {
+  assert.deepEqual(reasonsOf("AIR_TRAFFIC, NATURE"), { codes: ["AIR_TRAFFIC", "NATURE"], other: "" });
+  assert.deepEqual(reasonsOf("AIR_TRAFFIC, military, jets"), { codes: ["AIR_TRAFFIC"], other: "military, jets" });
+  assert.deepEqual(reasonsOf(""), { codes: [], other: "" });
+});
+
+test("an hour of UTC has the reader's beside it, and an event of the sun none", () => {
+  assert.equal(localText(null), "");
+  const ahead = -new Date().getTimezoneOffset();
+  assert.equal(localText("08:00:00Z") === "", ahead === 0);
 });
