@@ -104,7 +104,10 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
     expect(panel.locator(".rehearsal-targets .fail .rehearsal-why").first).to_have_text(
         re.compile(r"% battery at return, limit 20 %|was not flown to")
     )
-    expect(panel.get_by_role("img", name="Height above take-off by time").first).to_be_visible()
+    failures = panel.get_by_role("list", name="What failed")
+    expect(failures.get_by_role("button", name="Show").first).to_be_visible()
+    expect(panel.get_by_role("row", name=re.compile("Custom conditions.*capacity"))).to_be_visible()
+    expect(page.get_by_role("img", name="Height above take-off by time").first).to_be_visible()
     expect(panel.get_by_role("row", name=re.compile(r"^Battery at landing .* limit 20\s%"))).to_be_visible()
     panel.get_by_role("button", name="Calm").click()
     expect(panel.locator(".rehearsal-targets .pass")).to_have_count(3)

@@ -21,6 +21,7 @@ const route = (uav, level, targets, left_percent) => ({
   targets: targets.map(target),
   energy: [{ left_percent }],
   reserve_percent: 20,
+  planned_wh: 80,
 });
 const finding = (level, code, more = {}) => ({
   level,
@@ -80,6 +81,11 @@ test("a battery that is too low is planned again with that much more in reserve"
   const fix = fixOf(strong.assessment.findings[2], strong, null);
   assert.deepEqual([fix.code, fix.uav, fix.percent, plain(fix.words)], ["reserve", 0, 33, "Keep 33 % in reserve"]);
   assert.equal(fixOf(finding("fail", "reserve", { short_percent: 75 }), strong, null), null);
+  const uncounted = {
+    ...strong,
+    assessment: { ...strong.assessment, routes: [{ ...strong.assessment.routes[0], planned_wh: null }] },
+  };
+  assert.equal(fixOf(strong.assessment.findings[2], uncounted, null), null);
 });
 
 test("what stronger wind than planned brings about is planned again for that wind, else by hand", () => {

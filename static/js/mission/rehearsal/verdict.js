@@ -87,9 +87,9 @@ export function failuresFirst({ assessment }) {
  */
 export function fixOf({ code, uav, short_percent }, { conditions, assessment }, planned) {
   if (code === "reserve" && short_percent !== null) {
-    const reserve_percent = assessment?.routes.find((route) => route.uav === uav)?.reserve_percent ?? 0;
-    const percent = Math.ceil(reserve_percent + short_percent);
-    if (percent > MAX_RESERVE_PERCENT) return null;
+    const route = assessment?.routes.find((one) => one.uav === uav);
+    const percent = Math.ceil((route?.reserve_percent ?? 0) + short_percent);
+    if (!route || route.planned_wh === null || percent > MAX_RESERVE_PERCENT) return null; // without a capacity no plan counts energy
     return { code: "reserve", uav, percent, words: t("Keep {percent} in reserve", { percent: percentText(percent) }) };
   }
   const mps = strongest_mps(conditions);
