@@ -7,7 +7,7 @@ import { exactHeightText, heightText, numberText, percentText, speedText, whenTe
 import { figuresOf, LEVELS, levelWords, nearestOther, sentenceOf } from "../../rehearsal/rehearsal.js";
 import { drawCharts } from "../../rehearsal/rehearsal_charts.js";
 import { createRehearsalDock } from "./dock.js";
-import { failuresList, verdictTable } from "./verdict.js";
+import { conditionsTable, failuresList } from "./findings.js";
 
 /**
  * @import { RehearsalConditions, RehearsalDetail, RehearsalRunWithAssessment, RehearsalTrack, RehearsedRoute, RehearsedTarget,
@@ -17,9 +17,9 @@ import { failuresList, verdictTable } from "./verdict.js";
 /** @import { MissionStore, RehearsalState } from "../../types.d.ts" */
 /** @import { Rehearsing } from "./rehearsal.js" */
 
-/** @import { VerdictHow } from "./verdict.js" */
+/** @import { FindingsHow } from "./findings.js" */
 
-/** @typedef {Omit<VerdictHow, "store"> & { canRehearse: boolean, isStage: boolean, seeInSpace: () => unknown }} AssessmentHow */
+/** @typedef {Omit<FindingsHow, "store"> & { canRehearse: boolean, isStage: boolean, seeInSpace: () => unknown }} AssessmentHow */
 
 /** @param {MissionStore} store @param {Rehearsing} rehearsing @param {AssessmentHow} how */
 export function createAssessment(store, rehearsing, { canRehearse, isStage, seeInSpace, ...how }) {
@@ -80,7 +80,7 @@ export function createAssessment(store, rehearsing, { canRehearse, isStage, seeI
         detail.created_by && ` · ${detail.created_by}`,
       ),
       ageNotice(detail),
-      verdictTable(detail, number, (sequence) => void rehearsing.chooseRun(sequence)),
+      conditionsTable(detail, number, (sequence) => void rehearsing.chooseRun(sequence)),
       run?.assessment && failuresList(detail, number, { ...how, store }),
       run?.is_reused && reusedNote(run, canRehearse && !detail.is_outdated && againButton(detail)),
       run?.assessment && [

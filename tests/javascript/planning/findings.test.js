@@ -1,8 +1,8 @@
-/** The verdict of a rehearsal: conditions by UAVs, failures first, each with one fix. */
+/** What a rehearsal found: conditions by UAVs, failures first, each with one fix. */
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { failuresFirst, fixOf, verdictOf } from "../../../static/js/mission/rehearsal/verdict.js";
+import { conditionsByUav, failuresFirst, fixOf } from "../../../static/js/mission/rehearsal/findings.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const layer = (speed_mps) => ({ altitude_agl_m: 10, speed_mps, from_deg: 270 });
@@ -53,7 +53,7 @@ const uavs = [
 ];
 
 test("the table has a row for each of the conditions and a cell for each UAV", () => {
-  const { columns, rows } = verdictOf({ runs: [calm, strong], uavs });
+  const { columns, rows } = conditionsByUav({ runs: [calm, strong], uavs });
   assert.deepEqual(
     columns.map(({ letter, name }) => [letter, name]),
     [

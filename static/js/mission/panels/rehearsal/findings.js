@@ -1,19 +1,19 @@
-/** The verdict: a table of conditions by UAVs, and the failures of the chosen condition, each with Show and one fix. */
+/** What a rehearsal found: a table of conditions by UAVs, and the failures of the chosen condition, each with Show and one fix. */
 
 import { h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { percentText } from "../../../units.js";
 import { conditionsOf } from "../../flight_options.js";
+import { conditionsByUav, failuresFirst, fixOf } from "../../rehearsal/findings.js";
 import { LEVELS, levelWords } from "../../rehearsal/rehearsal.js";
-import { failuresFirst, fixOf, verdictOf } from "../../rehearsal/verdict.js";
 
 /** @import { Finding, RehearsalDetail } from "../../../api_types.d.ts" */
 /** @import { MissionActions, MissionStore } from "../../types.d.ts" */
-/** @import { Fix, VerdictCell } from "../../rehearsal/verdict.js" */
+/** @import { Fix, ConditionCell } from "../../rehearsal/findings.js" */
 
 /**
- * @typedef {object} VerdictHow
+ * @typedef {object} FindingsHow
  * @property {MissionStore} store
  * @property {MissionActions} actions
  * @property {boolean} canPlan the plan may be changed
@@ -23,14 +23,14 @@ import { failuresFirst, fixOf, verdictOf } from "../../rehearsal/verdict.js";
 const SHOWN_FIRST = 6;
 
 /** @param {RehearsalDetail} detail @param {number} shown @param {(sequence: number) => void} choose */
-export function verdictTable(detail, shown, choose) {
-  const { columns, rows } = verdictOf(detail);
+export function conditionsTable(detail, shown, choose) {
+  const { columns, rows } = conditionsByUav(detail);
   return h(
     "div",
-    { class: "verdict-place", role: "group", "aria-label": t("Conditions") },
+    { class: "assessed-place", role: "group", "aria-label": t("Conditions") },
     h(
       "table",
-      { class: "verdict" },
+      { class: "assessed" },
       h(
         "thead",
         {},
@@ -44,7 +44,7 @@ export function verdictTable(detail, shown, choose) {
               { scope: "col", class: `route-${routeNumber(uav)}` },
               h("span", { class: "letter", "aria-hidden": "true" }, letter),
               " ",
-              h("span", { class: "verdict-uav", title: name }, name),
+              h("span", { class: "assessed-uav", title: name }, name),
             ),
           ),
           h("th", { scope: "col", class: "number", title: t("Battery at landing") }, t("Lowest|battery")),
@@ -82,13 +82,13 @@ export function verdictTable(detail, shown, choose) {
   );
 }
 
-/** "4", or "3 of 4" where some fail. @param {VerdictCell | null} one */
+/** "4", or "3 of 4" where some fail. @param {ConditionCell | null} one */
 function cell(one) {
   if (!one?.level) return h("td", {}, "—");
   const { level, passed, all } = one;
   return h(
     "td",
-    { class: `verdict-cell ${level}` },
+    { class: `assessed-cell ${level}` },
     icon(LEVELS[level], "small"),
     h("span", { class: "unseen" }, `${levelWords(level)}: `),
     passed === all ? `${all}` : t("{passed} of {all}", { passed, all }),
@@ -100,7 +100,7 @@ function cell(one) {
  *
  * @param {RehearsalDetail} detail
  * @param {number} number of the run
- * @param {VerdictHow} how
+ * @param {FindingsHow} how
  */
 export function failuresList(detail, number, how) {
   const run = detail.runs[number];
@@ -113,18 +113,18 @@ export function failuresList(detail, number, how) {
   });
   const more = rows.length - SHOWN_FIRST;
   return [
-    h("ul", { class: "verdict-failures", "aria-label": t("What failed") }, rows.slice(0, SHOWN_FIRST)),
+    h("ul", { class: "assessed-failures", "aria-label": t("What failed") }, rows.slice(0, SHOWN_FIRST)),
     more > 0 &&
       h(
         "details",
-        { class: "verdict-more" },
+        { class: "assessed-more" },
         h("summary", {}, tn(more, "{count} more", "{count} more")),
-        h("ul", { class: "verdict-failures" }, rows.slice(SHOWN_FIRST)),
+        h("ul", { class: "assessed-failures" }, rows.slice(SHOWN_FIRST)),
       ),
   ];
 }
 
-/** @param {Finding} finding @param {Fix | null} fix @param {number[][]} places @param {VerdictHow} how */
+/** @param {Finding} finding @param {Fix | null} fix @param {number[][]} places @param {FindingsHow} how */
 function failure({ level, message }, fix, places, how) {
   return h(
     "li",
@@ -145,7 +145,7 @@ function failure({ level, message }, fix, places, how) {
   );
 }
 
-/** Where it happened: at the waypoint, else at the target. @param {Finding} finding @param {VerdictHow} how */
+/** Where it happened: at the waypoint, else at the target. @param {Finding} finding @param {FindingsHow} how */
 function placesOf({ uav, waypoint, target }, { store }) {
   const { plan, selection } = store.state;
   const point = waypoint === null ? undefined : plan?.result.routes[uav]?.waypoints[waypoint]?.position;
@@ -154,7 +154,7 @@ function placesOf({ uav, waypoint, target }, { store }) {
   return place ? [place] : [];
 }
 
-/** @param {Fix} fix @param {VerdictHow} how */
+/** @param {Fix} fix @param {FindingsHow} how */
 function planAgain(fix, { store, actions }) {
   if (fix.code === "by_hand") {
     location.assign(`/missions/${store.state.mission?.id}`);

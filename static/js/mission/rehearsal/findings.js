@@ -1,4 +1,4 @@
-/** The verdict of a rehearsal: conditions by UAVs, and what failed first, each with one fix. Values in, values out. */
+/** What a rehearsal found: conditions by UAVs, and what failed first, each with one fix. Values in, values out. */
 
 import { routeLetter } from "../../domain/palette.js";
 import { t } from "../../text.js";
@@ -7,14 +7,14 @@ import { percentText, speedText } from "../../units.js";
 /** @import { AssessmentLevel, Finding, RehearsalConditions, RehearsalDetail, RehearsalRunWithAssessment } from "../../api_types.d.ts" */
 /** @import { Conditions } from "../types.d.ts" */
 
-/** @typedef {{ level: AssessmentLevel | "", passed: number, all: number }} VerdictCell of one UAV in one of the conditions */
+/** @typedef {{ level: AssessmentLevel | "", passed: number, all: number }} ConditionCell of one UAV in one of the conditions */
 /**
- * @typedef {object} VerdictRow
+ * @typedef {object} ConditionRow
  * @property {number} sequence of the run
  * @property {string} words
  * @property {string} air
  * @property {AssessmentLevel | ""} level
- * @property {(VerdictCell | null)[]} cells in the order of the UAVs; null: not flown
+ * @property {(ConditionCell | null)[]} cells in the order of the UAVs; null: not flown
  * @property {number | null} lowest_percent of the battery at a landing
  */
 /**
@@ -43,9 +43,9 @@ export function airText(conditions) {
 }
 
 /** @param {Pick<RehearsalDetail, "runs" | "uavs">} detail */
-export function verdictOf({ runs, uavs }) {
+export function conditionsByUav({ runs, uavs }) {
   const columns = uavs.map(({ uav, name }) => ({ uav, name, letter: routeLetter(uav) }));
-  /** @type {VerdictRow[]} */
+  /** @type {ConditionRow[]} */
   const rows = runs.map(({ sequence, words, conditions, level, assessment }) => {
     const routes = assessment?.routes ?? [];
     const left = routes.flatMap(({ energy }) => energy.map(({ left_percent }) => left_percent));
