@@ -12,7 +12,7 @@ import { mountCoordinates, mountScale, setAttribution } from "./furniture.js";
 import { layersMenu } from "./look/layers_menu.js";
 import { mountLegend } from "./look/legend.js";
 import { createShown } from "./look/shown.js";
-import { rememberedUnder, rememberUnder, underChoices } from "./look/under.js";
+import { rememberedUnder, rememberUnder, rememberUnreachable, underChoices } from "./look/under.js";
 import { TILES } from "./look/voltages.js";
 import { createMeasure } from "./measure_tool.js";
 
@@ -133,17 +133,49 @@ function watchPointerAndIdle(map, container) {
  */
 function chooseUnder(view, page, onChange) {
   let under = rememberedUnder(page);
-  return {
-    choices: underChoices(page),
-    chosen: () => under,
-    /** @param {string} name */
-    choose(name) {
-      under = name;
-      view.putUnder(name);
-      onChange();
-      rememberUnder(name);
-    },
-  };
+  /** @param {string} name */
+  function put(name) {
+    under = name;
+    view.putUnder(name);
+    onChange();
+  }
+  /** @param {string} name */
+  function choose(name) {
+    put(name);
+    rememberUnder(name);
+  }
+  watchUnder(view.map, (name) => {
+    if (under !== name) return; // said already
+    put("");
+    if (copiedAt !== null) return; // the page says that nothing can be reached
+    rememberUnreachable(name);
+    toast(t("The base map cannot be reached. The map works without it."), {
+      label: t("Try again"),
+      act: () => choose(name),
+    });
+  });
+  return { choices: underChoices(page), chosen: () => under, choose };
+}
+
+/**
+ * Report a base map of which no tile has come and one could not be requested. While the device itself has no network none is reported.
+ *
+ * @param {MapLibreMap} map
+ * @param {(name: string) => void} onUnreachable
+ */
+function watchUnder(map, onUnreachable) {
+  /** @type {Set<string>} */
+  const reached = new Set();
+  map.on("data", (event) => {
+    const { sourceId, tile } = /** @type {{ sourceId?: string, tile?: { state: string } }} */ (event);
+    if (sourceId && tile?.state === "loaded") reached.add(sourceId);
+  });
+  map.on("error", (event) => {
+    const { sourceId, error } = /** @type {MapFault} */ (event);
+    if ((sourceId !== "base-map" && sourceId !== "satellite") || reached.has(sourceId)) return;
+    const hasAnswered = Boolean(error?.status);
+    if (!hasAnswered && error?.name !== "AbortError" && navigator.onLine) onUnreachable(sourceId);
+  });
 }
 
 /** @param {MapLibreMap} map @param {ReturnType<typeof chooseUnder>} under @param {ControlActs} act */
