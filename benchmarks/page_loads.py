@@ -3,7 +3,8 @@
     python -m benchmarks.page_loads --site http://127.0.0.1:8000 --password-file var/demo_password [--turns 5] [--processor 4]
 
 The network is Chromium's emulation of slow 4G (150 ms, 1.6 Mbit/s down, 750 kbit/s up), the screen a phone's. A cold load begins with an
-empty cache, a warm one follows it in the same browser. A page can be used once its script has drawn its data (`html[data-loaded]`).
+empty cache, a warm one follows it in the same browser. A page can be used once its script has drawn its data (`html[data-usable]`), and
+is whole once its map has been drawn, too (`html[data-loaded]`).
 Chromium does not slow down the workers that fetch tiles of the map. Requests and bytes are of what the page has fetched once it is idle.
 """
 
@@ -19,11 +20,24 @@ from typing import Any
 
 from playwright.sync_api import Browser, BrowserContext, CDPSession, Request, sync_playwright
 
-from benchmarks.map_page import WATCH, Installation, sign_in
+from benchmarks.map_page import Installation, sign_in
 from scripts.installation.system_packages import BROWSERS
 from tests.browser.chromium import CHROMIUM_FLAGS
 
 SLOW_4G = {"offline": False, "latency": 150, "downloadThroughput": 1_600_000 / 8, "uploadThroughput": 750_000 / 8}
+# In every page, before its own scripts.
+WATCH = """
+(() => {
+  const watched = (window.watched = { usable: null, whole: null });
+  const look = () => {
+    const { usable, loaded } = document.documentElement?.dataset ?? {};
+    if (usable || loaded) watched.usable ??= performance.now();
+    if (loaded) watched.whole ??= performance.now();
+    else setTimeout(look, 4);
+  };
+  look();
+})();
+"""
 PHONE = {"width": 412, "height": 823}
 LOAD_TIMEOUT_MS = 90_000
 SETTLED_MS = 3_000  # after the last of all: lists of alerts, tiles
@@ -32,6 +46,7 @@ SETTLED_MS = 3_000  # after the last of all: lists of alerts, tiles
 @dataclass(frozen=True)
 class Load:
     usable_ms: float
+    whole_ms: float
     requests: int
     bytes: float
 
@@ -53,10 +68,10 @@ def load(context: BrowserContext, path: str, processor: float) -> Load:
         page.on("requestfinished", lambda request: fetched.append(request))
         page.goto(path, timeout=LOAD_TIMEOUT_MS, wait_until="commit")
         page.locator("html[data-loaded]").wait_for(state="attached", timeout=LOAD_TIMEOUT_MS)
-        usable_ms = float(page.evaluate("watched.usable"))
+        usable_ms, whole_ms = map(float, page.evaluate("[watched.usable, watched.whole]"))
         page.wait_for_timeout(SETTLED_MS)
         sizes = [request.sizes() for request in fetched]
-    return Load(usable_ms, len(fetched), sum(size["responseHeadersSize"] + size["responseBodySize"] for size in sizes))
+    return Load(usable_ms, whole_ms, len(fetched), sum(size["responseHeadersSize"] + size["responseBodySize"] for size in sizes))
 
 
 def measure(browser: Browser, site: Installation, state: dict[str, Any], path: str, *, turns: int, processor: float) -> None:
@@ -70,11 +85,12 @@ def measure(browser: Browser, site: Installation, state: dict[str, Any], path: s
         cold.append(load(context, path, processor))
         warm.append(load(context, path, processor))
         context.close()
-    name = path if len(path) < 40 else f"{path[:10]}…{path[46:]}"
+    name = "/missions/ID" if path.startswith("/missions/") else path
     for kind, loads in (("cold", cold), ("warm", warm)):
-        usable_s = [one.usable_ms / 1_000 for one in loads]
+        usable_s, whole_s = ([getattr(one, moment) / 1_000 for one in loads] for moment in ("usable_ms", "whole_ms"))
         print(
-            f"{name:20} {kind}  usable {median(usable_s):5.2f} s ({min(usable_s):.2f} to {max(usable_s):.2f})  "
+            f"{name:12} {kind}  usable {median(usable_s):5.2f} s ({min(usable_s):.2f} to {max(usable_s):.2f})  "
+            f"whole {median(whole_s):5.2f} s ({min(whole_s):.2f} to {max(whole_s):.2f})  "
             f"{median(one.requests for one in loads):4.0f} requests  {median(one.bytes for one in loads) / 1_000:6.0f} kB",
             flush=True,
         )

@@ -11,7 +11,7 @@ from config import page_bundles
 
 RECORD = "bundles.json"
 SOURCES_OF_BUNDLES = ("js/", "css/pages/")
-UNBUNDLED_SCRIPTS = ("js/theme_early.js", "js/offline/service_worker.js", "js/locale/")
+UNBUNDLED_SCRIPTS = ("js/early.js", "js/offline/service_worker.js", "js/locale/")
 
 
 class StaticFiles(ManifestStaticFilesStorage):

@@ -124,6 +124,20 @@ async function problemOf(response) {
 }
 
 /**
+ * The answer to a request that early.js began, once; null where there is none, or where it failed.
+ *
+ * @param {string} address
+ * @returns {Promise<Response | null> | null}
+ */
+function begunEarly(address) {
+  /** @type {Map<string, Promise<Response>> | undefined} */
+  const begun = /** @type {any} */ (globalThis).earlyRequests;
+  const answer = begun?.get(address);
+  begun?.delete(address);
+  return answer?.catch(() => null) ?? null;
+}
+
+/**
  * request("POST", "/plans", { body }) → { data, status, etag }; 304 comes without data.
  *
  * @param {string} method
@@ -155,7 +169,8 @@ export async function request(method, path, { body, bytes, headers = {}, signal,
   }
   let response;
   try {
-    response = await fetch(address, send);
+    const isPlain = method === "GET" && copiedAt === null && !signal && Object.keys(headers).length === 0;
+    response = (isPlain && (await begunEarly(address))) || (await fetch(address, send));
   } catch (error) {
     if (error instanceof DOMException && error.name === "AbortError") throw error;
     throw new ApiError(t("The server cannot be reached."), { code: "server_away" });

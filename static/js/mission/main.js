@@ -348,6 +348,7 @@ async function load() {
     actions.failed(t("Not loaded."), error, [{ label: t("Load again"), act: () => location.reload() }]);
     if (!(error instanceof ApiError)) throw error;
   }
+  document.documentElement.dataset.usable = "true";
   await map.ready;
   if (!store.state.plan && !map.opensAtPlace) map.fit({ animate: false });
   document.documentElement.dataset.loaded = "true";

@@ -245,6 +245,7 @@ async function load() {
   const loading = byId("map-loading");
   store.listen(["isWhole", "missions", "details"], (state) => {
     loading.hidden ||= copiedAt !== null || hasArrived(state); // a mission that comes later is no reason to cover the map
+    if (loading.hidden) document.documentElement.dataset.usable = "true";
   });
   const approved =
     copiedAt !== null && page.mission
