@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, at_zoom, look_at, place_of, stores_mission, wait_for_map
@@ -104,3 +104,40 @@ def test_routes_say_how_they_end_and_the_switch_what_happens_without_it(visitor:
     page.get_by_role("button", name="Plan again").click()
     expect(page.locator("#plan-sentence")).to_have_text(re.compile(r"Done in \d+\smin\."))
     expect(page.get_by_role("list", name="Routes")).to_contain_text(re.compile(r"ends hovering at [AB]\d"))
+
+
+def test_a_base_map_that_cannot_be_reached_is_said_once_and_asked_for_no_more(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    asked: list[str] = []
+
+    def refuse(route: Route) -> None:
+        asked.append(route.request.url)
+        route.abort()
+
+    def with_base_map(route: Route) -> None:
+        answer = route.fetch()
+        body = answer.text().replace(
+            '"baseMap": {"tiles": ""', f'"baseMap": {{"tiles": "{visitor.site.address}/no-tiles/{{z}}/{{x}}/{{y}}"'
+        )
+        assert "/no-tiles/" in body
+        route.fulfill(response=answer, body=body)
+
+    page.route("**/no-tiles/**", refuse)
+    page.route("**/missions/new", with_base_map)
+    page.goto("/missions/new")
+    message = page.get_by_text("The base map cannot be reached")
+    expect(message).to_be_visible()
+    wait_for_map(page)
+    before = len(asked)
+    assert 1 <= before <= 20
+    page.locator("#zoom-in").click()
+    wait_for_map(page)
+    page.reload()
+    wait_for_map(page)
+    expect(message).to_have_count(0)
+    assert len(asked) == before
+    page.get_by_role("button", name="Layers").click()
+    page.get_by_role("radio", name="Map", exact=True).check()
+    expect(message).to_be_visible()
+    assert len(asked) > before
+    visitor.complaints[:] = [complaint for complaint in visitor.complaints if "ERR_FAILED" not in complaint]  # the tiles
