@@ -195,7 +195,7 @@ def test_a_token_is_shown_once_replaced_and_revoked(visitor: Visitor, picture: P
     uav = writes(page, "POST", "/uavs", {"name": "Turnstone", "position": YARD, "type": unlimited_type(page)})["id"]
     fleet(page, f"?id={uav}")
     details(page).get_by_role("button", name="Create: Token of the HTTP link").click()
-    secret = details(page).locator("code")
+    secret = details(page).locator(".secret code")
     expect(secret).to_have_text(re.compile(r"^spu_[\w-]{43}$"))
     picture(page, "uav-token-dark")
     first = secret.text_content()
@@ -247,10 +247,14 @@ def test_what_was_typed_stays_when_the_network_is_gone_and_comes_back_when_it_wa
 
 
 def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
-    page = fleet(visitor.signs_in("opal"))
+    page = visitor.signs_in("opal")
+    unlimited_type(page)
+    fleet(page)
     page.keyboard.press("c")
     expect(page.get_by_label("Name", exact=True)).to_be_focused()
     page.keyboard.type("Lapwing")
+    page.keyboard.press("Tab")
+    page.keyboard.type("Unlimited")
     page.keyboard.press("Control+s")
     is_saved(page, "Lapwing")
     page.keyboard.press("e")
@@ -274,7 +278,7 @@ def test_axe_finds_nothing_serious_in_details_and_forms(visitor: Visitor, theme:
     expect(details(page).get_by_text("No mission uses it yet.")).to_be_visible()
     assert faults(page) == []
     details(page).get_by_role("button", name="Create: MAVLink signing key").click()
-    expect(details(page).locator("code")).to_have_text(re.compile(r"^[0-9a-f]{64}$"))
+    expect(details(page).locator(".secret code")).to_have_text(re.compile(r"^[0-9a-f]{64}$"))
     assert faults(page) == []
     details(page).get_by_role("button", name="Edit").click()
     expect(page.get_by_label("Name", exact=True)).to_be_focused()

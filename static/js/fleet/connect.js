@@ -4,7 +4,6 @@ import { h, icon, segments } from "../dom.js";
 import { copyText } from "../page/clipboard.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
-import { receivedWords } from "./connection.js";
 
 /** @import { UavConnection } from "../api_types.d.ts" */
 /** @import { Child } from "../dom.js" */
@@ -49,7 +48,7 @@ export function autopilotText({ autopilot, firmware, vehicle_type }) {
 export function stateText(connection) {
   if (!connection.last_message_at) return t("Waiting for the first message…");
   const who = autopilotText(connection);
-  return who ? t("Received: {autopilot}", { autopilot: who }) : receivedWords(connection).words;
+  return who ? t("Received: {autopilot}", { autopilot: who }) : t("Received");
 }
 
 /** @param {string} words */
