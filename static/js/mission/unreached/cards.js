@@ -21,6 +21,7 @@ import { causesOf, causeWords, commonSentence } from "./causes.js";
  */
 
 const MAX_LISTED = 20;
+const TOLD_BY_TITLE = ["stands_inside_zone", "runs_through_zone", "lands_through_zone"];
 const NEEDS_UAV = ["not_connected", "no_access_for_uavs"]; // a UAV that starts there would do
 
 /** @param {ShownPlan | null} plan @param {CardContext} context @returns {HTMLElement[]} */
@@ -39,7 +40,13 @@ function card(cause, context) {
     h(
       "div",
       {},
-      h("p", {}, h("strong", {}, title), " ", isOne ? first.sentence : commonSentence(cause)),
+      h(
+        "p",
+        {},
+        h("strong", {}, title),
+        " ",
+        isOne ? first.sentence : !TOLD_BY_TITLE.includes(cause.code) && commonSentence(cause),
+      ),
       !isOne && whichOf(cause),
       h("p", { class: "notice-acts" }, actsOf(cause, context)),
     ),

@@ -45,7 +45,7 @@ export function mountForm({ onStart, onChange }) {
     h(
       "fieldset",
       { class: "rehearsal-conditions" },
-      h("legend", { class: "field-label" }, t("Conditions")),
+      h("legend", { class: "unseen" }, t("Conditions")),
       checks.map(({ element }) => element),
       h("label", { class: "rehearsal-check" }, own, h("span", {}, t("Custom conditions"))),
     ),

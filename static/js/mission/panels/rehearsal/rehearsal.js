@@ -45,6 +45,8 @@ export function mountRehearsal(store, rehearsing, how) {
   const assessment = createAssessment(store, rehearsing, how);
   const form = canRehearse ? mountForm({ onStart: start, onChange: () => draw(store.state) }) : null;
   if (form) place("cancel").addEventListener("click", () => void rehearsing.cancel());
+  const choice = form ? byId("rehearsal-choice", HTMLDetailsElement) : null;
+  let isFolded = false; // once: the result comes first
   earlier.addEventListener("change", () => void rehearsing.show(earlier.value));
 
   function start() {
@@ -66,6 +68,10 @@ export function mountRehearsal(store, rehearsing, how) {
     const isKnown = Boolean(rehearsal.detail?.runs);
     place("assessment").hidden = !isKnown;
     place("empty").hidden = isKnown || rehearsal.list === null || rehearsal.list.some(isRunning);
+    if (choice && isKnown && !isFolded) {
+      isFolded = true;
+      choice.open = choice.contains(document.activeElement);
+    }
     assessment.draw(rehearsal, mission?.revision);
   }
 
@@ -78,6 +84,7 @@ export function mountRehearsal(store, rehearsing, how) {
     if (section.hidden) return false;
     const scrolled = section.closest(".side-scroll"); // the page itself stays where it is
     if (scrolled) scrolled.scrollTop += section.getBoundingClientRect().top - scrolled.getBoundingClientRect().top;
+    if (choice) choice.open = true;
     form.focus();
     return true;
   };
