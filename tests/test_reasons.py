@@ -116,5 +116,5 @@ def test_why_a_rehearsed_uav_crashed_is_read_in_german() -> None:
     hit = Reason("hit_ground", {"speed": 7.3})
     finding = {"code": "crashed", "facts": {"name": "Kite", "said": str(hit), "said_why": hit.to_json()}}
     with override("de"):
-        assert reason_of(finding, {}).endswith("Es ist mit 7,3 m/s auf den Boden geschlagen.")
-        assert reason_of({"code": "crashed", "facts": {"name": "Kite", "said": str(hit)}}, {}).endswith(str(hit))
+        assert reason_of(finding, {}, {}).endswith("Es ist mit 7,3 m/s auf den Boden geschlagen.")
+        assert reason_of({"code": "crashed", "facts": {"name": "Kite", "said": str(hit)}}, {}, {}).endswith(str(hit))
