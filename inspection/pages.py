@@ -4,7 +4,7 @@ from typing import Any
 
 from django.conf import settings
 
-from inspection.selectors import ground_extent
+from inspection.selectors import map_data
 from workspace.pages import SignedInPage, raster_maps
 
 
@@ -18,7 +18,7 @@ class GroundPage(SignedInPage):
         return super().get_context_data(**kwargs) | {"section": self.section, "tab": self.tab}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        return {"extent": ground_extent()} | raster_maps()
+        return map_data() | raster_maps()
 
 
 class AssetsPage(GroundPage):

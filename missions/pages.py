@@ -4,7 +4,7 @@ from typing import Any
 
 from django.http import Http404
 
-from inspection.selectors import ground_extent
+from inspection.selectors import map_data
 from missions.models import MissionState
 from missions.selectors.missions import mission_bounds, state_of_mission
 from missions.services.missions import EDITABLE
@@ -37,7 +37,7 @@ class MissionPage(SignedInPage):
             "isFrozen": is_frozen,
             "stage": self.stage,
             "mission": str(mission_id) if mission_id else None,
-            "extent": ground_extent(),
+            **map_data(),
             "bounds": mission_bounds(mission_id) if mission_id else None,
         } | raster_maps()
 
@@ -49,4 +49,4 @@ class FleetPage(SignedInPage):
     extra_context = {"section": "fleet"}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        return {"extent": ground_extent()} | raster_maps()
+        return map_data() | raster_maps()

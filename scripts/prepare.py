@@ -41,7 +41,7 @@ def collect_static_files(places: Places) -> None:
     """Copy and rename static files, unless they are unchanged since the last time: scanning all of them takes seconds."""
     digest = hashlib.sha256()
     for source in (page_bundles, static_files):
-        digest.update(Path(source.__file__).read_bytes())
+        digest.update(Path(str(source.__file__)).read_bytes())
     for finder in get_finders():
         for name, storage in finder.list([]):
             digest.update(f"{name} {storage.size(name)} {storage.get_modified_time(name)}\n".encode())

@@ -5,7 +5,7 @@ from uuid import UUID
 
 from django.http import Http404
 
-from inspection.selectors import ground_extent
+from inspection.selectors import map_data
 from missions.models import Mission, MissionUav
 from missions.selectors.missions import mission_bounds
 from workspace.pages import SignedInPage, raster_maps
@@ -18,7 +18,7 @@ class LivePage(SignedInPage):
     extra_context = {"section": "live"}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        return {"canFly": self.request.user.can_plan, "mission": None, "extent": ground_extent(), "bounds": None} | raster_maps()
+        return {"canFly": self.request.user.can_plan, "mission": None, **map_data(), "bounds": None} | raster_maps()
 
 
 class MissionStagePage(SignedInPage):
@@ -41,7 +41,7 @@ class MissionStagePage(SignedInPage):
             "mission": str(mission_id),
             "missionName": mission.name,
             "simulates": None if original is None else {"id": str(original.pk), "name": original.name},
-            "extent": ground_extent(),
+            **map_data(),
             "bounds": mission_bounds(mission_id),
         } | raster_maps()
 

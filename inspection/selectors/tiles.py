@@ -3,12 +3,15 @@
 import contextlib
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from django.core.cache import cache
 from django.db import connection
+from django.utils.translation import get_language
 
 from inspection.models import AssetKind
 from inspection.selectors.asset_names import DETAIL_SQL, LABEL_SQL, LINE_VOLTAGE_V, VOLTAGES_SQL, sql_words
+from inspection.selectors.ground import DatasetVersion, ground_dataset_version, ground_extent
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 
 LAST_KEPT_ZOOM = 11
@@ -43,6 +46,17 @@ ZONE_COLUMNS = f"""
 """
 ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoom)s)"
 SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
+
+
+def tile_edition(version: DatasetVersion | None = None) -> str:
+    """Return a text that differs after each change of the map data and for each language: the pages' maps have it in tiles' addresses."""
+    revision, changed_at = version or ground_dataset_version()
+    return f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{RECIPE}-{get_language()}"
+
+
+def map_data() -> dict[str, Any]:
+    """Return what a page with a map needs of the map data: their extent, and the edition of the tiles."""
+    return {"extent": ground_extent(), "tiles": tile_edition()}
 
 
 def tile_of_version(zoom: int, column: int, row: int, dataset_version: str | None) -> bytes:

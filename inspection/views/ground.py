@@ -28,6 +28,7 @@ from inspection.views.parameters import BOX_TEXT, box_of, invalid
 from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer
 
+EDITION_KEPT_S = 600
 TILE_TYPE = "application/vnd.mapbox-vector-tile"
 
 
@@ -143,12 +144,18 @@ class Tile(APIView):
         summary="A vector tile of assets and zones",
         description="Layers lines, railways, bridges, bridge_points, towers, zones, zone_labels; empty where there is nothing. "
         "Labels and details are in the reader's language. The ETag changes with the ground and the language.",
-        parameters=[OpenApiParameter("of", str, description="has no effect on the answer: with another value a map asks again at once")],
+        parameters=[
+            OpenApiParameter(
+                "of",
+                str,
+                description="edition of a page; browsers keep a tile of the present one for ten minutes",
+            )
+        ],
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
     )
     def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:
-        revision, changed_at = selectors.ground_dataset_version()
-        dataset_version = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}-{get_language()}"
+        version = selectors.ground_dataset_version()
+        dataset_version, changed_at = selectors.tile_edition(version), version[1]
         etag = f'"{dataset_version}"'
         not_changed = get_conditional_response(request._request, etag=etag)
         if not_changed is not None:
@@ -160,5 +167,7 @@ class Tile(APIView):
             except NoSuchTile as error:
                 raise Http404 from error
         response["ETag"] = etag
-        response["Cache-Control"] = "private, no-cache"  # stored, but revalidated: zones may be new
+        is_of_edition = changed_at is not None and request.query_params.get("of") == dataset_version
+        # A page that is open does not learn of a new zone here: it asks again after that time.
+        response["Cache-Control"] = f"private, max-age={EDITION_KEPT_S}" if is_of_edition else "private, no-cache"
         return response

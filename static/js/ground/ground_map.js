@@ -7,6 +7,7 @@ import { createTip } from "../map/furniture.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { rememberedUnder } from "../map/look/under.js";
 import { createMap } from "../map/map_view.js";
+import { tilesAddress } from "../map/tiles_address.js";
 import { tipOf } from "../map/tips.js";
 import { t } from "../text.js";
 
@@ -129,5 +130,5 @@ function easeTo(map, [longitude, latitude]) {
 function refreshTiles(map) {
   /** @type {VectorTileSource | undefined} */
   const source = map.getSource("ground-tiles");
-  source?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${Date.now()}`]);
+  source?.setTiles([tilesAddress(Date.now())]);
 }

@@ -7,6 +7,7 @@ import * as graticule from "./layers/graticule.js";
 import { provideImages } from "./look/images.js";
 import { mapStyle, repaint } from "./look/style.js";
 import { maplibre } from "./maplibre.js";
+import { tilesAddress } from "./tiles_address.js";
 
 /** @import { Box, MapFault, MapLibreMap, MapOptions, MapView } from "./types.d.ts" */
 
@@ -25,7 +26,7 @@ const FOOT_GAP_PX = 24;
  * @returns {MapView}
  */
 export function createMap(container, { baseMap, satellite, under, describe, bounds, extent }) {
-  const options = { tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`, baseMap, satellite, under };
+  const options = { tilesAddress: tilesAddress(), baseMap, satellite, under };
   let palette = readPalette();
   const addressed = () => {
     const view = viewOf(location.hash);

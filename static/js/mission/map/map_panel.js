@@ -11,6 +11,7 @@ import { rememberedUnder } from "../../map/look/under.js";
 import { TILES } from "../../map/look/voltages.js";
 import { boxAround, createMap } from "../../map/map_view.js";
 import { goTo } from "../../map/places_found.js";
+import { tilesAddress } from "../../map/tiles_address.js";
 import { t, tn } from "../../text.js";
 import { standingUavs } from "../fleet.js";
 import { mountHandMap } from "../hand/hand_map.js";
@@ -312,7 +313,7 @@ function watchPlans({ map, opensAtPlace }, store, fitting) {
   const drawGround = (revision) => {
     if (revision === null || revision === undefined || revision <= (drawnGround ?? -1)) return;
     const tiles = /** @type {VectorTileSource | undefined} */ (map.getSource(TILES));
-    if (drawnGround !== null) tiles?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${revision}`]); // a zone may have been added
+    if (drawnGround !== null) tiles?.setTiles([tilesAddress(revision)]); // a zone may have been added
     drawnGround = revision;
   };
   store.listen(["groundRevision", "plan"], ({ groundRevision, plan }) => {

@@ -7,6 +7,7 @@ import { provideImages } from "../../map/look/images.js";
 import { mapStyle, repaint, sourceOf } from "../../map/look/style.js";
 import { boxAround, showFaults } from "../../map/map_view.js";
 import { maplibre } from "../../map/maplibre.js";
+import { tilesAddress } from "../../map/tiles_address.js";
 import { t } from "../../text.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
 import * as flightLayers from "./flight_layers.js";
@@ -59,7 +60,7 @@ class CloseUp {
   constructor(view, frame, page) {
     this.#view = view;
     this.#style = {
-      tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`,
+      tilesAddress: tilesAddress(),
       baseMap: page.baseMap,
       satellite: page.satellite,
       under: "",
