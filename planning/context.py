@@ -8,6 +8,7 @@ from inspection.network.build.network import Network
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
+from inspection.terrain.profile import profile_under
 from inspection.terrain.tiled_terrain import TiledTerrain
 from inspection.zones.reach import BoolArray, ZoneTable
 from inspection.zones.schedule import ZoneRules
@@ -15,7 +16,7 @@ from planning.clearance.zone_clearance import Margins
 from planning.problem import Task
 from planning.rules import FlightRules, RoutingRules, SeparationRules
 from planning.separation.separation import TimedRoute
-from planning.trajectory.heights import FloatArray, GroundHeights
+from planning.trajectory.heights import FloatArray, Ground, GroundHeights
 
 Box = tuple[float, float, float, float]
 
@@ -80,6 +81,10 @@ class Terrain:
     of_nodes_m: Callable[[InspectionGraph], FloatArray]
     around: Callable[[Box], TiledTerrain]
 
+    @property
+    def ground(self) -> Ground:
+        return Ground(self.heights_m, lambda start, end: profile_under(start, end, self.around))
+
 
 def _no_other_flights(window_s: float) -> OtherFlights:
     return OtherFlights()
@@ -110,6 +115,11 @@ class PlanningContext:
     out_of_service: Mapping[int, str] = field(default_factory=dict)
     in_air: frozenset[int] = frozenset()
     other_flights: Callable[[float], OtherFlights] = _no_other_flights
+
+    @property
+    def ground(self) -> Ground | None:
+        """The terrain under routes; None without a model."""
+        return None if self.terrain is None else self.terrain.ground
 
     @property
     def heights_m(self) -> GroundHeights | None:

@@ -52,7 +52,7 @@ class FlightRules:
     longest_flight_s: float = 14_400.0  # zones that come into force later than that after the departure are left to the last look
     turnaround_s: float = 600.0  # from the landing of one flight to the take-off of the next, with another battery
     longest_leg_m: float = 900.0  # PX4's MIS_DIST_WPS; the geodesic then keeps to the drawn line within 0.1 m
-    terrain_tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints before one is put in
+    terrain_tolerance_m: float = 10.0  # by which legs may be higher above ground than planned before a waypoint is put in
     manoeuvres: Manoeuvres = Manoeuvres()
 
     def __post_init__(self) -> None:

@@ -6,9 +6,12 @@ from math import ceil
 
 import numpy as np
 import shapely
+from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.wgs84 import FloatArray, distance_m
+
+BoolArray = NDArray[np.bool_]
 
 REFERENCES = ("AGL", "AMSL", "RELATIVE")
 
@@ -118,27 +121,49 @@ class HeightGrid:
 
         Beside a void means that a post with weight is void: on a post itself its own height suffices.
         """
-        rows, columns = self.heights_m.shape
-        x = (positions[:, 0] - self.west_deg) / self.step_lon_deg
-        y = (self.north_deg - positions[:, 1]) / self.step_lat_deg
-        tolerance = 1e-9 * (abs(self.west_deg) + 360.0) / min(self.step_lon_deg, self.step_lat_deg)  # rounding of the file's own origin
-        inside = (x >= -tolerance) & (y >= -tolerance) & (x <= columns - 1 + tolerance) & (y <= rows - 1 + tolerance)
         heights = np.full(len(positions), np.nan)
-        if not inside.any():
-            return heights
-        x, y = np.clip(x[inside], 0.0, columns - 1.0), np.clip(y[inside], 0.0, rows - 1.0)
-        column, row = np.minimum(x.astype(np.intp), max(columns - 2, 0)), np.minimum(y.astype(np.intp), max(rows - 2, 0))
-        right, down = np.minimum(column + 1, columns - 1), np.minimum(row + 1, rows - 1)
-        east, south = x - column, y - row
-        total = np.zeros(len(x))
-        corners = (
-            (row, column, (1 - east) * (1 - south)), (row, right, east * (1 - south)),
-            (down, column, (1 - east) * south), (down, right, east * south),
-        )  # fmt: skip
-        for at_row, at_column, weight in corners:
-            total += np.where(weight > NO_WEIGHT, self.heights_m[at_row, at_column].astype(np.float64) * weight, 0.0)
-        heights[inside] = total
+        self.fill(positions, heights)
         return heights
+
+    def fill(self, positions: FloatArray, heights: FloatArray) -> BoolArray:
+        """Fill in the same where heights (n,) are NaN, and return which of these positions are in the grid, (n,)."""
+        posts_m = np.ascontiguousarray(self.heights_m)
+        return _filled(
+            self.west_deg, self.north_deg, self.step_lon_deg, self.step_lat_deg, posts_m, np.ascontiguousarray(positions), heights
+        )
+
+
+@njit(cache=True, nogil=True)
+def _filled(
+    west_deg: float,
+    north_deg: float,
+    step_lon_deg: float,
+    step_lat_deg: float,
+    posts_m: NDArray[np.float32],
+    positions: FloatArray,
+    heights: FloatArray,
+) -> BoolArray:
+    rows, columns = posts_m.shape
+    rounding = 1e-9 * (abs(west_deg) + 360.0) / min(step_lon_deg, step_lat_deg)  # of the file's own origin
+    inside = np.zeros(len(positions), dtype=np.bool_)
+    for number in range(len(positions)):
+        x = (positions[number, 0] - west_deg) / step_lon_deg
+        y = (north_deg - positions[number, 1]) / step_lat_deg
+        is_inside = -rounding <= x <= columns - 1 + rounding and -rounding <= y <= rows - 1 + rounding
+        if not is_inside or not np.isnan(heights[number]):
+            continue
+        inside[number] = True
+        x, y = min(max(x, 0.0), columns - 1.0), min(max(y, 0.0), rows - 1.0)
+        column, row = min(int(x), max(columns - 2, 0)), min(int(y), max(rows - 2, 0))
+        east, south = x - column, y - row
+        total = 0.0
+        for down in range(2):
+            for right in range(2):
+                weight = (east if right else 1.0 - east) * (south if down else 1.0 - south)
+                if weight > NO_WEIGHT:
+                    total += posts_m[min(row + down, rows - 1), min(column + right, columns - 1)] * weight
+        heights[number] = total
+    return inside
 
 
 def packed(heights: NDArray[np.float32]) -> bytes:

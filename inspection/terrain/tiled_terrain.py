@@ -6,14 +6,18 @@ from functools import cached_property
 
 import numpy as np
 import shapely
+from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.terrain.heights import NO_WEIGHT, HeightGrid
 
 _EDGE_DEG = 1e-9
+EDGE = 1e-3  # of a step: positions nearer to a tile may be in it by rounding
+FEW_TILES = 32  # so few are looked through faster than a tree finds the right ones
 
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +65,7 @@ class TiledTerrain:
 
         Where models overlap the newest counts, and older ones fill its voids.
         """
-        positions = np.asarray(positions, dtype=np.float64).reshape(-1, 2)
+        positions = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 2)
         found = TerrainHeights(np.full(len(positions), np.nan), np.full(len(positions), -1, dtype=np.int64))
         if not len(self.keys) or not len(positions):
             return found
@@ -85,8 +89,37 @@ class TiledTerrain:
                 yield number, grid
 
 
-def _sample(terrain: TiledTerrain, positions: FloatArray, found: TerrainHeights) -> NDArray[np.bool_]:
+def _sample(terrain: TiledTerrain, positions: FloatArray, found: TerrainHeights) -> BoolArray:
     """Fill in the heights inside of tiles; returns which positions are in any tile."""
+    if len(terrain) > FEW_TILES:
+        return _sample_of_many(terrain, positions, found)
+    inside = np.zeros(len(positions), dtype=bool)
+    touched = _touched(terrain.lattice, terrain.size, positions)
+    for number in touched.tolist():
+        grid = terrain.grid(terrain.keys, number, touched)
+        if grid is None:
+            continue
+        filled = grid.fill(positions, found.heights_m)
+        found.imports[filled & ~np.isnan(found.heights_m)] = terrain.imports[number]
+        inside |= filled
+    return inside
+
+
+@njit(cache=True, nogil=True)
+def _touched(lattice: FloatArray, size: IntArray, positions: FloatArray) -> IntArray:
+    """The tiles with a position in them or at their edges."""
+    is_touched = np.zeros(len(lattice), dtype=np.bool_)
+    for tile in range(len(lattice)):
+        west, north, step_lon, step_lat = lattice[tile]
+        for number in range(len(positions)):
+            x, y = (positions[number, 0] - west) / step_lon, (north - positions[number, 1]) / step_lat
+            if -EDGE <= x <= size[tile, 0] - 1 + EDGE and -EDGE <= y <= size[tile, 1] - 1 + EDGE:
+                is_touched[tile] = True
+                break
+    return np.flatnonzero(is_touched)
+
+
+def _sample_of_many(terrain: TiledTerrain, positions: FloatArray, found: TerrainHeights) -> BoolArray:
     places, tiles = terrain.within.query(shapely.points(positions), predicate="intersects")
     inside = np.zeros(len(positions), dtype=bool)
     if not len(places):

@@ -11,15 +11,17 @@ from django.utils.translation import gettext as _
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.network.spans import Spans, spans_between, spans_of
-from inspection.selectors import NoGraph, ground_heights_m, has_terrain
+from inspection.selectors import NoGraph
+from inspection.selectors.ground import ground_dataset_version
 from inspection.selectors.planning import planning_read
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
+from missions.selectors.planning_context import terrain_under
 from missions.selectors.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance
-from planning.trajectory.heights import with_heights
+from planning.trajectory.heights import Ground, with_heights
 from planning.trajectory.leg_speeds import SpeedRange, speeds_out_of_range
 from planning.trajectory.obstacles import too_low
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
@@ -56,11 +58,8 @@ class LegFlyer(NamedTuple):
 
 def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegFlyer | None = None) -> list[dict[str, Any]]:
     """Return what is wrong with each leg. flyer is needed where a leg has a speed."""
-    table, has_ground, spans = zone_table(), has_terrain(), _all_spans()
-    return [
-        _faults(leg.start, leg.end, departs_at, table, spans, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT
-        for leg in legs
-    ]
+    table, ground, spans = zone_table(), terrain_under(ground_dataset_version()), _all_spans()
+    return [_faults(leg.start, leg.end, departs_at, table, spans, ground) or _speed_fault(leg, flyer) or _NO_FAULT for leg in legs]
 
 
 def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:
@@ -85,14 +84,14 @@ def _speed_fault(leg: Leg, flyer: LegFlyer | None) -> dict[str, Any] | None:
 
 
 def _faults(
-    start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, spans: Spans, *, has_ground: bool
+    start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, spans: Spans, ground: Ground | None
 ) -> dict[str, Any] | None:
     """Return the first fault of a leg, or None; the vertical columns to the ground at its ends are not checked."""
     flight = settings.FLIGHT_RULES
     if max(start.agl_m, end.agl_m) > flight.max_agl_m:
         return _fault(None, _("It is above the limit of %(limit)s m.") % {"limit": f"{flight.max_agl_m:.0f}"})
     points = RoutePoints.of([RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (start, end)])
-    flown, _is_flat = with_heights(points, ground_heights_m if has_ground else None, flight)  # several legs over a hill
+    flown, _is_flat = with_heights(points, ground, flight, points.agl_m)  # several legs over a hill
     position = flown.points.position
     arrival_s = departs_s = ends_s = None
     if departs_at is not None and start.arrival_s is not None and end.arrival_s is not None:
@@ -103,7 +102,7 @@ def _faults(
     for meeting in zones_met([leg], table)[0]:
         if 0 <= meeting.breach.leg < len(position) - 1:
             return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
-    low = too_low(flown, _spans_elsewhere(spans, position), ground_heights_m if has_ground else None, flight)
+    low = too_low(flown, _spans_elsewhere(spans, position), ground, flight)
     return None if low is None else _fault(None, too_low_text(float(low.agl_m.max())))
 
 

@@ -2,13 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
+from inspection.selectors.ground import DatasetVersion
 from inspection.selectors.node_ground import node_ground_m
 from inspection.selectors.planning import PlanningGround, heights_at, planning_read, terrain_at
 from inspection.selectors.terrain import tiles_around
+from inspection.terrain.profile import profile_under
 from missions.hooks.in_air import uavs_in_the_air
 from missions.models import UavState
 from missions.selectors.fleet import bases_of_organisation, states_out_of_service
@@ -18,6 +21,7 @@ from missions.selectors.resolved_targets import NamedTarget, resolved_targets, w
 from planning.airspace import Airspace, airspace_on, zone_choice
 from planning.context import OtherFlights, PlanningContext, ResolvedTarget, Terrain
 from planning.request import BaseRequest, EndAction, InvalidRequest, PlanRequest
+from planning.trajectory.heights import Ground
 from workspace.models import Organisation
 
 
@@ -26,6 +30,14 @@ def read_targets(request: PlanRequest) -> tuple[PlanningGround, list[NamedTarget
     read = planning_read(whole_assets(request.targets))
     targets, deleted = resolved_targets(request.targets, read.points)
     return read.ground(), targets, deleted
+
+
+def terrain_under(dataset_version: DatasetVersion) -> Ground | None:
+    """Return the terrain under routes over this dataset version; None without a terrain model."""
+    heights_m = heights_at(dataset_version)
+    if heights_m is None:
+        return None
+    return Ground(heights_m, partial(profile_under, around=partial(tiles_around, dataset_version=dataset_version)))
 
 
 def planning_context(

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from planning.clearance.surroundings import Surroundings
+from planning.clearance.surroundings import SAMPLE_SPACING_M, Surroundings
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, breaches
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, Air, hold_taken, landing_taken, leg_taken
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.rules import FlightRules
-from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
+from planning.trajectory.heights import GroundHeights
 from planning.trajectory.spans_below import tops_below
 from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import BASE, Waypoints

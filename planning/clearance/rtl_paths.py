@@ -11,9 +11,9 @@ from enum import StrEnum
 import numpy as np
 
 from inspection.geodesy import LonLat, distance_m
-from planning.clearance.surroundings import Surroundings
+from planning.clearance.surroundings import SAMPLE_SPACING_M, Surroundings
 from planning.clearance.zone_clearance import TAKE_OFF, BoolArray, FlownRoute, breaches
-from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
+from planning.trajectory.heights import GroundHeights
 from planning.trajectory.spans_below import tops_below
 from planning.trajectory.waypoints import FloatArray, IntArray
 

@@ -8,6 +8,7 @@ from inspection.network.spans import Spans, spans_between
 from planning.clearance.zone_clearance import Margins, ZoneFacts
 from planning.trajectory.heights import GroundHeights
 
+SAMPLE_SPACING_M = 50.0  # how densely the ground under a way home is looked at
 NOTHING_STANDS = spans_between(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), np.empty(0))
 
 

@@ -128,7 +128,7 @@ class TrajectoryBuilder(RoutingInput):
         }
 
     def _flight(self, uav: int, order: Sequence[int], passed: PassedNodes) -> "_Flight":
-        flight, at, ground = self.airspace.flight, self.request.uavs[uav].position, self.airspace.context.heights_m
+        flight, at, ground = self.airspace.flight, self.request.uavs[uav].position, self.airspace.context.ground
         action = self.request.end_action(uav)
         base = self._base(action, order)
         points = route_points(

@@ -2,23 +2,30 @@
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from inspection.geodesy import distance_m
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V, UNTAGGED_HEIGHT_M
-from inspection.terrain.heights import amsl_m, counted_from
+from inspection.terrain.heights import counted_from
+from inspection.terrain.profile import GroundProfile
 from planning.rules import FlightRules
-from planning.trajectory.waypoints import RoutePoints, Waypoints
+from planning.trajectory.terrain_following import BELOW_M, SLACK_M, followed_terrain
+from planning.trajectory.waypoints import PASS, RoutePoints, Waypoints
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres above sea level (n,), NaN where unknown
 
-SAMPLE_SPACING_M = 50.0  # how densely the ground under a leg is looked at
+
+class Ground(NamedTuple):
+    """A terrain model: heights of places (n, 2), and its profile under straight legs from places (n, 2) to places (n, 2)."""
+
+    heights_m: GroundHeights
+    profile: Callable[[FloatArray, FloatArray], GroundProfile]
+
+
 # Heights where no tag states one, towards the upper end of what is common, so that the error is on the safe side.
 DEFAULT_HEIGHT_M = {
     "pole": 14.0,
@@ -61,85 +68,40 @@ def inspection_agl_m(height_m: float, rules: FlightRules) -> float:
     return height_m + rules.clearance_m if height_m > 0 else rules.transit_agl_m
 
 
-def with_heights(points: RoutePoints, ground_heights_m: GroundHeights | None, rules: FlightRules) -> tuple[Waypoints, bool]:
+def with_heights(
+    points: RoutePoints, ground: Ground | None, rules: FlightRules, floor_agl_m: FloatArray | None = None
+) -> tuple[Waypoints, bool]:
     """Waypoints with all three heights, and whether flat ground had to be assumed: without a terrain model, or where it has a gap.
 
-    Where the ground between two points bulges or sags by more than the tolerance, waypoints are put in on the straight lon/lat line
-    between them. If the ground is unknown in even one place, nothing is put in and no height above sea level is given.
+    A planned height is a floor: waypoints are put in on the straight lon/lat line between two points so that no leg comes lower than the
+    straight line between their heights above ground, but for BELOW_M, or higher than the tolerance above it, anywhere over the model's
+    own surface. Points that are passed may themselves be flown so much higher, where that needs fewer waypoints; with floor_agl_m, (n,),
+    all are flown as they are, and legs may come down to the straight line between these. If the ground is unknown in even one place,
+    nothing is put in and no height above sea level is given.
     """
     flat = Waypoints(points, None, points.agl_m)
-    if ground_heights_m is None or not points:
+    if ground is None or len(points) < 2:
         return flat, bool(points)
-    counts = _sample_counts(points.position)
-    ground_m = ground_heights_m(_sampled(points.position, counts))
-    if np.isnan(ground_m).any():
+    profile = ground.profile(points.position[:-1], points.position[1:])
+    if np.isnan(profile.heights_m).any():
         return flat, True
 
-    take_off_m = float(ground_m[0])
-    legs, bent, ground = _bends(counts, ground_m, rules.terrain_tolerance_m)
-    flown = points.with_points_between(legs, bent) if len(legs) else points
-    above_sea_m = amsl_m(flown.agl_m, "AGL", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
-    above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
-    return Waypoints(flown, above_sea_m, above_take_off_m), False
-
-
-def _sample_counts(position: FloatArray) -> IntArray:
-    """Of each leg, its end not counted."""
-    length_m = distance_m(position[:-1], position[1:])
-    return np.maximum(1, np.ceil(length_m / SAMPLE_SPACING_M)).astype(np.int64)
-
-
-@njit(cache=True, nogil=True)
-def _sampled(position: FloatArray, counts: IntArray) -> FloatArray:
-    """Evenly on the straight lon/lat lines between positions (n, 2), counts (n - 1,) on each, and the last position: (counts + 1, 2)."""
-    samples, at = np.empty((counts.sum() + 1, 2)), 0
-    for leg in range(len(counts)):
-        for step in range(counts[leg]):
-            share = step / counts[leg]
-            samples[at] = position[leg] + share * (position[leg + 1] - position[leg])
-            at += 1
-    samples[at] = position[-1]
-    return samples
-
-
-@njit(cache=True, nogil=True)
-def _bends(counts: IntArray, ground_m: FloatArray, tolerance_m: float) -> tuple[IntArray, FloatArray, FloatArray]:
-    """The samples needed so that straight lines between them stay within the tolerance of the ground's shape (Douglas-Peucker).
-
-    Their legs and their shares of them, (k,) each; and the ground under all points, these among them.
-    """
-    is_bend = np.zeros(len(ground_m), dtype=np.bool_)
-    stack = np.empty((counts.max() + 2 if len(counts) else 0, 2), dtype=np.int64)
-    first = 0
-    for count in counts:
-        stack[0, 0], stack[0, 1], depth = 0, count, 1
-        while depth:
-            depth -= 1
-            low, high = stack[depth, 0], stack[depth, 1]
-            low_m = ground_m[first + low]
-            slope_m = (ground_m[first + high] - low_m) / (high / count - low / count)
-            worst_m, bend = tolerance_m, -1
-            for sample in range(low + 1, high):
-                off_m = abs(ground_m[first + sample] - (slope_m * (sample / count - low / count) + low_m))
-                if off_m > worst_m:
-                    worst_m, bend = off_m, sample
-            if bend >= 0:
-                is_bend[first + bend] = True
-                stack[depth, 0], stack[depth, 1] = low, bend
-                stack[depth + 1, 0], stack[depth + 1, 1] = bend, high
-                depth += 2
-        first += count
-    bends = is_bend.sum()
-    legs, shares = np.empty(bends, dtype=np.int64), np.empty(bends)
-    under_m = np.empty(bends + len(counts) + 1)
-    under_m[0] = ground_m[0]
-    first, found, under = 0, 0, 1
-    for leg in range(len(counts)):
-        for sample in range(counts[leg]):
-            if is_bend[first + sample]:
-                legs[found], shares[found], under_m[under] = leg, sample / counts[leg], ground_m[first + sample]
-                found, under = found + 1, under + 1
-        first += counts[leg]
-        under_m[under] = ground_m[first]
-        under += 1
-    return legs, shares, under_m
+    take_off_m = float(profile.heights_m[0, 0])
+    is_passed = np.zeros(len(points), dtype=np.bool_)
+    if floor_agl_m is None:
+        is_passed = points.kind == PASS
+        is_passed[list(points.task)] = False
+    floors_m, tolerance_m, max_agl_m = points.agl_m + SLACK_M, rules.terrain_tolerance_m, rules.max_agl_m
+    if floor_agl_m is not None:  # legs as they were drawn between such points stay as they are
+        floors_m, tolerance_m, max_agl_m = floor_agl_m, tolerance_m + BELOW_M, max_agl_m + SLACK_M
+    is_vertical = (points.position[:-1] == points.position[1:]).all(axis=1)
+    found = followed_terrain(points.agl_m, floors_m, is_vertical, is_passed, profile, tolerance_m, max_agl_m)
+    flown = points.with_points_between(found.leg, found.share) if len(found.leg) else points
+    place = found.leg + 1 + np.arange(len(found.leg))
+    is_own = np.ones(len(flown), dtype=np.bool_)
+    is_own[place] = False
+    above_sea_m, ground_m = np.empty(len(flown)), np.empty(len(flown))
+    above_sea_m[is_own], above_sea_m[place] = found.own_m, found.level_m
+    ground_m[is_own], ground_m[place] = found.own_ground_m, found.ground_m
+    above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground_m, take_off_amsl_m=take_off_m)
+    return Waypoints(flown.at_heights(above_sea_m - ground_m), above_sea_m, above_take_off_m), False

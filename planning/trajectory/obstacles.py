@@ -7,13 +7,15 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
 from inspection.network.spans import Spans
+from inspection.terrain.profile import heights_over
 from planning.rules import FlightRules
 from planning.trajectory.beside_spans import legs_beside, points_beside, stretches_too_low
-from planning.trajectory.heights import GroundHeights
+from planning.trajectory.heights import Ground
 from planning.trajectory.sloped_rises import ProfilePoint, with_slopes
 from planning.trajectory.waypoints import END, NONE, PASS, FloatArray, IntArray, RoutePoints, Waypoints
 
 HAIR = 1e-9  # of a leg
+HIGHER_M = 0.05  # above the limit, by rounding and between the places at which ground is looked at
 ABOVE_ALL_M = 1e5  # the top of what stands on ground that is not known
 
 
@@ -22,8 +24,8 @@ class TooLow:
     """Stretches of legs that are to be flown higher, in their order, (k,): from and to as shares of the leg, and the level to have.
 
     place is that of the leg's start; or, where it is no leg, of a waypoint that is itself to stand higher. Levels count as the waypoints'
-    own: above the sea where that is known, else above flat ground. agl_m is the level above the ground there; span what stands there, by
-    its number. Both heights are inf where nobody knows how high that stands, as the ground under it is not known.
+    own: above the sea where that is known, else above flat ground. agl_m is the level above the lowest ground there; span what stands
+    there, by its number. Both heights are inf where nobody knows how high that stands, as the ground under it is not known.
     """
 
     place: IntArray
@@ -41,19 +43,19 @@ class TooLow:
         return TooLow(*(values[chosen] for values in vars(self).values()))
 
 
-def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules) -> TooLow | None:
+def too_low(waypoints: Waypoints, spans: Spans, ground: Ground | None, rules: FlightRules) -> TooLow | None:
     """Where waypoints and legs come within BESIDE_M, across the ground, of something and not by the clearance over it; None for nowhere.
 
-    ground_heights_m is asked only where the waypoints have heights above the sea. What is inspected, and the wires at it, do not count
+    ground is asked only where the waypoints have heights above the sea. What is inspected, and the wires at it, do not count
     while it is inspected.
     """
     if not len(spans) or len(waypoints) < 2:
         return None
     points = waypoints.points
-    is_known = waypoints.amsl_m is not None and ground_heights_m is not None
-    level_m = points.agl_m if waypoints.amsl_m is None or not is_known else waypoints.amsl_m
+    known = None if waypoints.amsl_m is None else ground
+    level_m = points.agl_m if waypoints.amsl_m is None or known is None else waypoints.amsl_m
     own, asset = _inspected(points)
-    on_flat_m = np.inf if is_known else rules.clearance_m
+    on_flat_m = rules.clearance_m if known is None else np.inf
     leg, leg_span = legs_beside(points.position, level_m, own, asset, on_flat_m, spans)
     point, point_span = points_beside(points.position, level_m, own, asset, on_flat_m, spans)
     if not len(leg) and not len(point):
@@ -61,8 +63,8 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     span = np.concatenate([leg_span, point_span])
     place = np.concatenate([leg, point])
     ground_m = np.zeros((len(span), 2))
-    if is_known and ground_heights_m is not None:
-        reported_m = ground_heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
+    if known is not None:
+        reported_m = known.heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
         ground_m = np.where(np.isnan(reported_m).any(axis=1, keepdims=True), ABOVE_ALL_M, reported_m)
     heights_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
     least_m = np.ascontiguousarray(ground_m + heights_m + rules.clearance_m)
@@ -70,32 +72,42 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     row, begin, until, needed_m = stretches_too_low(points.position, level_m, place, is_leg, span, least_m, spans)
     if not len(row):
         return None
-    at = np.concatenate([_on_leg(points, place[row], begin), _on_leg(points, place[row], until)])
-    under_m = np.zeros(len(at))
-    if is_known and ground_heights_m is not None:
-        here_m = (level_m - points.agl_m)[place[row]]
-        reported_m = ground_heights_m(at)
-        under_m = np.where(np.isnan(reported_m), np.tile(here_m, 2), reported_m)
-    agl_m = needed_m - under_m.reshape(2, -1).min(axis=0)
+    agl_m = needed_m.copy()
+    if known is not None:
+        profile = known.profile(_on_leg(points, place[row], begin), _on_leg(points, place[row], until))
+        _least_m, highest_m = heights_over(profile, needed_m, needed_m)
+        agl_m = np.where(np.isnan(highest_m), needed_m - (level_m - points.agl_m)[place[row]], highest_m)
     is_unknown = needed_m >= ABOVE_ALL_M
     needed_m[is_unknown] = agl_m[is_unknown] = np.inf
     order = np.lexsort((begin, ~is_leg[row], place[row]))
     return TooLow(place[row][order], is_leg[row][order], begin[order], until[order], needed_m[order], agl_m[order], span[row][order])
 
 
-def rising_over(
-    waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules
-) -> tuple[Waypoints, tuple[int, ...]]:
+def rising_over(waypoints: Waypoints, spans: Spans, ground: Ground | None, rules: FlightRules) -> tuple[Waypoints, tuple[int, ...]]:
     """The waypoints, with a climb before, a level stretch over and a descent behind whatever they would pass too low.
 
     Also the numbers of the spans over which a UAV would have to rise above the limit, or nobody knows how high: such a route is not to
     be flown.
     """
-    low = too_low(waypoints, spans, ground_heights_m, rules)
+    low = too_low(waypoints, spans, ground, rules)
     if low is None:
         return waypoints, ()
     blocked = tuple(np.unique(low.span[low.agl_m > rules.max_agl_m + HAIR]).tolist())
-    return _risen(waypoints, low.where(np.isfinite(low.level_m)), ground_heights_m, rules.max_agl_m), blocked
+    known = low.where(np.isfinite(low.level_m))
+    risen = _risen(waypoints, known, ground, rules.max_agl_m)
+    if ground is not None and not blocked and highest_agl_m(risen, ground) > rules.max_agl_m + HIGHER_M:
+        risen = _risen(waypoints, known, ground, rules.max_agl_m, with_slopes_beside=False)  # the ground falls more steeply than a slope
+    return risen, blocked
+
+
+def highest_agl_m(waypoints: Waypoints, ground: Ground) -> float:
+    """The greatest height over the ground anywhere on the legs; that of the waypoints where the ground is not known."""
+    position, level_m = waypoints.points.position, waypoints.amsl_m
+    highest_m = float(waypoints.points.agl_m.max())
+    if level_m is None or len(waypoints) < 2:
+        return highest_m
+    _least_m, most_m = heights_over(ground.profile(position[:-1], position[1:]), level_m[:-1], level_m[1:])
+    return max(highest_m, float(np.nan_to_num(most_m, nan=-np.inf).max()))
 
 
 def _inspected(points: RoutePoints) -> tuple[IntArray, IntArray]:
@@ -115,7 +127,7 @@ def _on_leg(points: RoutePoints, place: IntArray, share: FloatArray) -> FloatArr
     return at
 
 
-def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | None, max_agl_m: float) -> Waypoints:
+def _risen(waypoints: Waypoints, low: TooLow, ground: Ground | None, max_agl_m: float, *, with_slopes_beside: bool = True) -> Waypoints:
     points = waypoints.points
     is_known = waypoints.amsl_m is not None
     plain_m = points.agl_m if waypoints.amsl_m is None else waypoints.amsl_m
@@ -137,7 +149,8 @@ def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | 
             legs.append(leg)
             shares.append(share)
             levels_m.append(own_m)
-    legs, shares, levels_m = _with_slopes(points, level_m, plain_m - points.agl_m + max_agl_m, legs, shares, levels_m)
+    if with_slopes_beside:
+        legs, shares, levels_m = _with_slopes(points, level_m, plain_m - points.agl_m + max_agl_m, legs, shares, levels_m)
     place = np.array(legs, dtype=np.int64)
     flown = points.with_points_between(place, np.array(shares, dtype=np.float64))
     new = place + 1 + np.arange(len(place))
@@ -149,10 +162,10 @@ def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | 
     flown_m[new], flown_m[~is_new] = levels_m, level_m
     if is_known:
         ground_m[~is_new] = (waypoints.amsl_m - points.agl_m) if waypoints.amsl_m is not None else 0.0
-        reported_m = np.full(len(new), np.nan) if ground_heights_m is None else ground_heights_m(flown.position[new])
+        reported_m = np.full(len(new), np.nan) if ground is None else ground.heights_m(flown.position[new])
         ground_m[new] = np.where(np.isnan(reported_m), ground_m[~is_new][place], reported_m)
     agl_m = flown_m - ground_m
-    risen = RoutePoints(flown.position, agl_m, flown.kind, flown.asset, flown.target, flown.task, flown.speed_mps)
+    risen = flown.at_heights(agl_m)
     if waypoints.amsl_m is None:
         return Waypoints(risen, None, agl_m)
     return Waypoints(risen, flown_m, flown_m - (waypoints.amsl_m[0] - waypoints.relative_m[0]))

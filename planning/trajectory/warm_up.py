@@ -6,6 +6,9 @@ from inspection.geodesy import LonLat
 from inspection.network.spans import spans_between
 from inspection.network.warm_up import graph_to_rehearse_on
 from inspection.network.zones.zone_index import ZoneIndex
+from inspection.terrain.heights import HeightGrid
+from inspection.terrain.profile import ground_profile
+from inspection.terrain.tiled_terrain import TiledTerrain
 from planning.clearance.obstacle_clearance import spans_too_near
 from planning.connection_points import AccessRules, Terminal, paths_between
 from planning.energy.assignment_costs import Finish, FlownVisits, FlyingFleet, flight_costs
@@ -15,7 +18,8 @@ from planning.energy.performance import Performance
 from planning.problem import End, Task, TaskKind
 from planning.rules import FlightRules, SeparationRules
 from planning.separation.separation import TimedRoute, keep_apart
-from planning.trajectory.obstacles import rising_over
+from planning.trajectory.heights import Ground, with_heights
+from planning.trajectory.obstacles import highest_agl_m, rising_over
 from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from planning.trajectory.timing import timing
 from planning.trajectory.waypoints import RoutePoints, Waypoints
@@ -29,6 +33,7 @@ def rehearse() -> None:
     points = with_short_legs(points, 900.0)[0]
     line_of(points)
     _rehearse_rising(points)
+    _rehearse_terrain(points)
     _rehearse_time_and_energy(points)
     hovering = TimedRoute("", np.array([[9.0, 47.0], [9.1, 47.0]]), np.full(2, 60.0), np.array([0.0, 600.0]), np.zeros(2), take_off_m=60.0)
     keep_apart([hovering, hovering], rules=SeparationRules())
@@ -40,6 +45,19 @@ def _rehearse_rising(points: RoutePoints) -> None:
     waypoints = Waypoints(points, None, points.agl_m)
     rising_over(waypoints, across, None, FlightRules())
     spans_too_near(waypoints, across, None, FlightRules())
+
+
+def _rehearse_terrain(points: RoutePoints) -> None:
+    """Over a hill under the first leg."""
+    hill_m = np.zeros((3, 3), dtype=np.float32)
+    hill_m[1, 1] = 200.0
+    grid = HeightGrid(8.5, 47.5, 0.5, 0.5, hill_m)
+    tiles = TiledTerrain(
+        np.array([1]), np.array([1]), np.array([[8.5, 47.5, 0.5, 0.5]]), np.array([[3, 3]]), lambda keys, number, wanted: grid
+    )
+    ground = Ground(lambda positions: tiles.heights_at(positions).heights_m, lambda start, end: ground_profile(tiles, start, end))
+    waypoints, _is_flat = with_heights(points, ground, FlightRules())
+    highest_agl_m(waypoints, ground)
 
 
 def _rehearse_time_and_energy(points: RoutePoints) -> None:

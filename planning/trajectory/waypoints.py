@@ -118,6 +118,10 @@ class RoutePoints:
         }
         return RoutePoints(*columns, {moved(place): task for place, task in self.task.items()}, speeds)
 
+    def at_heights(self, agl_m: FloatArray) -> "RoutePoints":
+        """The same points at other heights above ground, (n,)."""
+        return RoutePoints(self.position, agl_m, self.kind, self.asset, self.target, self.task, self.speed_mps)
+
 
 @njit(cache=True, nogil=True)
 def _with_points_between(

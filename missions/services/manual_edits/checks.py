@@ -6,16 +6,18 @@ from dataclasses import dataclass, field
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
+from numpy.typing import NDArray
 
 from inspection.models import AssetKind
 from inspection.network.build.network import Network
 from inspection.network.spans import spans_of
-from inspection.selectors.planning import DatasetVersion, heights_at, planning_read
+from inspection.selectors.planning import DatasetVersion, planning_read
 from missions.models import Mission
 from missions.reason_texts import fault_texts
 from missions.selectors.legs import LegFlyer, speed_words, too_low_text
+from missions.selectors.planning_context import terrain_under
 from missions.selectors.zones import MetZone, zones_met
-from missions.services.manual_edits.points import EditedPoint, are_moved, list_faults, route_points
+from missions.services.manual_edits.points import HIGHER_M, EditedPoint, are_by_hand, are_moved, list_faults, route_points
 from missions.services.manual_edits.stored_route import KeptWaypoint, kept_route
 from planning.checks.zones import flown_route
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
@@ -24,7 +26,7 @@ from planning.connection_points import tallest_support_m
 from planning.energy.power import NoHeadway
 from planning.plan import PlannedRoute
 from planning.request import EndAction, InvalidRequest, PlanRequest
-from planning.trajectory.heights import GroundHeights, asset_height_m, with_heights
+from planning.trajectory.heights import Ground, asset_height_m, with_heights
 from planning.trajectory.leg_speeds import ground_speeds, speeds_out_of_range
 from planning.trajectory.obstacles import too_low
 from planning.trajectory.route_points import line_of, with_short_legs
@@ -33,22 +35,20 @@ from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import RoutePoints, WaypointKind, Waypoints
 from workspace.locale_negotiation import number_text
 
-HIGHER_M = 0.05
-
 
 @dataclass(frozen=True, eq=False)
 class ManualEditContext:
-    """Map data of a check. heights: of the terrain model; None: there is none."""
+    """Map data of a check. terrain: None without a terrain model."""
 
     network: Network
-    heights: GroundHeights | None
+    terrain: Ground | None
     dataset_version: DatasetVersion
 
 
 def manual_edit_context() -> ManualEditContext:
     """Return the current context. Raises NoGraph."""
     ground = planning_read().ground()
-    return ManualEditContext(ground.network(), heights_at(ground.dataset_version), ground.dataset_version)
+    return ManualEditContext(ground.network(), terrain_under(ground.dataset_version), ground.dataset_version)
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,8 @@ def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[EditedPoin
     wished = route_points(points, route.waypoints)
     faults = obstacle_faults(wished, ground) | point_faults(points, route.waypoints, ground)
     try:
-        flown = flown_manual_edit(route.request, uav, wished, route.departs_s, ground)
+        by_hand = np.array(are_by_hand(points, route.waypoints), dtype=np.bool_)
+        flown = flown_manual_edit(route.request, uav, wished, by_hand, route.departs_s, ground)
     except InvalidRequest as error:
         return ManualEditCheck(fault_texts(error) | faults)
     for found in faults_as_flown(flown, wished, mission, route.request, uav, ground):
@@ -136,14 +137,14 @@ def point_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint
 def obstacle_faults(points: RoutePoints, ground: ManualEditContext) -> dict[str, str]:
     """Return the faults of points and straight legs, as requested, that pass an obstacle too low."""
     flight = settings.FLIGHT_RULES
-    under_m = np.full(len(points), np.nan) if ground.heights is None else ground.heights(points.position)
+    under_m = np.full(len(points), np.nan) if ground.terrain is None else ground.terrain.heights_m(points.position)
     amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
     waypoints, spans = Waypoints(points, amsl_m, points.agl_m), spans_of(ground.network)
-    low = too_low(waypoints, spans, ground.heights, flight)
+    low = too_low(waypoints, spans, ground.terrain, flight)
     if low is None:
         return {}
     near = legs_too_near(
-        waypoints, spans, ground.heights, flight
+        waypoints, spans, None if ground.terrain is None else ground.terrain.heights_m, flight
     )  # rounded to centimetres a planned route may appear too low, but not too near
     stands = np.append((points.position[:-1] == points.position[1:]).all(axis=1), False)  # vertical to the next point
     faults: dict[str, str] = {}
@@ -157,7 +158,7 @@ def obstacle_faults(points: RoutePoints, ground: ManualEditContext) -> dict[str,
 def _wire_faults(flown: PlannedRoute, ground: ManualEditContext) -> dict[str, str]:
     """Return the faults of the final check against wires, of the route as drawn over the terrain."""
     assert flown.waypoints is not None  # noqa: S101 - set by the drawing
-    heights = None if flown.is_flat else ground.heights
+    heights = None if flown.is_flat or ground.terrain is None else ground.terrain.heights_m
     near = spans_too_near(flown.waypoints, spans_of(ground.network), heights, settings.FLIGHT_RULES)
     return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
 
@@ -185,10 +186,18 @@ def _node_heights_m(network: Network, assets: Collection[int]) -> dict[int, floa
     return found
 
 
-def flown_manual_edit(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float, ground: ManualEditContext) -> PlannedRoute:
+def flown_manual_edit(
+    request: PlanRequest, uav: int, points: RoutePoints, by_hand: NDArray[np.bool_], departs_s: float, ground: ManualEditContext
+) -> PlannedRoute:
+    """Return the route over these points. by_hand (n,): those that a user edited; a leg between them comes no lower than they are.
+
+    Other points may be higher than they need be because of the terrain: a leg between them comes down to the transit height at most.
+    """
     flight, action = settings.FLIGHT_RULES, request.end_action(uav)
+    floors_m = np.where(by_hand, points.agl_m, np.minimum(points.agl_m, flight.transit_agl_m))
+    floors, _length_m = with_short_legs(points.at_heights(floors_m), flight.longest_leg_m)
     points, length_m = with_short_legs(points, flight.longest_leg_m)
-    waypoints, is_flat = with_heights(points, ground.heights, flight)
+    waypoints, is_flat = with_heights(points, ground.terrain, flight, floors.agl_m)
     clock = _clock(waypoints, request, uav)
     return PlannedRoute(
         waypoints=waypoints, line=line_of(waypoints.points), length_m=length_m, duration_s=clock.total_s, end_action=action,

@@ -3,14 +3,15 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.db.models import Q
 from django.utils.translation import gettext as _
+from numpy.typing import NDArray
 
 from missions.models import Mission, Route, Waypoint
 from missions.services.manual_edits.checks import (
-    HIGHER_M,
     ManualEditContext,
     faults_as_flown,
     flown_manual_edit,
@@ -19,16 +20,15 @@ from missions.services.manual_edits.checks import (
     point_faults,
 )
 from missions.services.manual_edits.legs import step_points, step_row
-from missions.services.manual_edits.points import EditedPoint, are_moved, list_faults, route_points
+from missions.services.manual_edits.points import EditedPoint, are_by_hand, list_faults, route_points
 from missions.services.manual_edits.still_separated import separation_of_stored
-from missions.services.manual_edits.stored_route import KeptWaypoint, kept_waypoints
+from missions.services.manual_edits.stored_route import kept_waypoints
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from planning.plan import PlannedRoute
 from planning.request import InvalidRequest
 from planning.trajectory.waypoints import RoutePoint, RoutePoints
 from workspace.models import User
 
-SAME_SPEED_MPS = 0.005
 MAX_STEPS = 5  # that can be undone
 
 
@@ -48,9 +48,9 @@ def change_route(
         if len(route.before_hand) == MAX_STEPS:  # the planned route is dropped, and what was proven of it
             locked.plan_quality = {name: value for name, value in (locked.plan_quality or {}).items() if name != "planned"}
         route.before_hand = [*route.before_hand, [step_row(row) for row in rows]][-MAX_STEPS:]
-        moved = zip(points, are_moved(points, until_now), strict=True)
-        by_hand = {place_of(point.position, point.agl_m) for point, is_moved in moved if is_moved or _is_by_hand(point, until_now)}
-        _fly(locked, route, route_points(points, until_now), by_hand, ground)
+        wished = route_points(points, until_now)
+        by_hand = np.array(are_by_hand(points, until_now), dtype=np.bool_)
+        _fly(locked, route, wished, by_hand, ground)
         note(locked, actor, "by-hand", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
 
@@ -63,7 +63,7 @@ def take_back_change(*, mission: Mission, actor: User, uav: int, expected_revisi
             raise InvalidRequest({"uav": _("No change by hand of this route can be taken back.")})
         *route.before_hand, rows = route.before_hand
         points = step_points(rows)
-        by_hand = {place_of(point.position, point.agl_m) for point, row in zip(points, rows, strict=True) if row["is_by_hand"]}
+        by_hand = np.array([row["is_by_hand"] for row in rows], dtype=np.bool_)
         _fly(locked, route, RoutePoints.of(points), by_hand, manual_edit_context())
         note(locked, actor, "by-hand-undone", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
@@ -79,19 +79,24 @@ def _locked_route(mission: Mission, uav: int, expected_revision: int | None) -> 
     return locked, route
 
 
-def checked_manual_edit(locked: Mission, route: Route, wished: RoutePoints, ground: ManualEditContext) -> PlannedRoute:
-    """Return the route over these points as it is flown. Raises InvalidRequest with the faults of the first check that fails."""
+def checked_manual_edit(
+    locked: Mission, route: Route, wished: RoutePoints, by_hand: NDArray[np.bool_], ground: ManualEditContext
+) -> PlannedRoute:
+    """Return the route over these points as it is flown. by_hand (n,): points that a user edited.
+
+    Raises InvalidRequest with the faults of the first check that fails.
+    """
     _refuse(obstacle_faults(wished, ground))
     request, uav = request_of_mission(mission=locked), route.mission_uav.sequence
-    flown = flown_manual_edit(request, uav, wished, route.departs_s, ground)
+    flown = flown_manual_edit(request, uav, wished, by_hand, route.departs_s, ground)
     for faults in faults_as_flown(flown, wished, locked, request, uav, ground):
         _refuse(faults)
     return flown
 
 
-def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: ManualEditContext) -> None:
-    """Check the points, store them as the route, and update the mission. by_hand: the points that a user edited."""
-    store_manual_edit(locked, route, checked_manual_edit(locked, route, wished, ground), by_hand)
+def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: NDArray[np.bool_], ground: ManualEditContext) -> None:
+    """Check the points, store them as the route, and update the mission. by_hand (n,): the points that a user edited."""
+    store_manual_edit(locked, route, checked_manual_edit(locked, route, wished, by_hand, ground), places_of(wished, by_hand))
     settle_manual_edits(locked)
     locked.revision += 1
     locked.save()
@@ -163,19 +168,9 @@ def _task(point: RoutePoint) -> dict[str, Any] | None:
     return None if point.task is None else {"kind": point.task.kind.value, "hold_s": point.task.hold_s}
 
 
-def _is_by_hand(point: EditedPoint, until_now: Sequence[KeptWaypoint]) -> bool:
-    """Whether a point that stays at its place is a manual edit."""
-    if point.was is None:
-        return True
-    waypoint = until_now[point.was]
-    is_higher = abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
-    return waypoint.is_by_hand or is_higher or not _is_same_speed(point.speed_mps, waypoint.speed_mps)
-
-
-def _is_same_speed(one_mps: float | None, other_mps: float | None) -> bool:
-    if one_mps is None or other_mps is None:
-        return one_mps is other_mps
-    return abs(one_mps - other_mps) < SAME_SPEED_MPS
+def places_of(points: RoutePoints, by_hand: NDArray[np.bool_]) -> set[tuple[float, float, float]]:
+    """Return the places of the chosen points."""
+    return {place_of(points.position[place].tolist(), float(points.agl_m[place])) for place in np.flatnonzero(by_hand)}
 
 
 def place_of(position: Sequence[float], agl_m: float) -> tuple[float, float, float]:

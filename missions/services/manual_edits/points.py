@@ -13,6 +13,8 @@ from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
 from workspace.locale_negotiation import number_text
 
 MOVED_M = 0.1  # less is rounding
+HIGHER_M = 0.05
+SAME_SPEED_MPS = 0.005
 MAX_WAYPOINTS = 5_000
 MAX_LENGTH_M = 1_000_000.0
 
@@ -50,6 +52,26 @@ def are_moved(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) 
     before = [point.position if point.was is None else until_now[point.was].position for point in points]
     away_m = distance_m(np.array([point.position for point in points]), np.array(before)).tolist()
     return [point.was is None or metres > MOVED_M for point, metres in zip(points, away_m, strict=True)]
+
+
+def are_by_hand(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> list[bool]:
+    """Return for each point whether its place, height or speed is a manual edit."""
+    return [
+        is_moved or point.was is None or _is_by_hand(point, until_now[point.was])
+        for point, is_moved in zip(points, are_moved(points, until_now), strict=True)
+    ]
+
+
+def _is_by_hand(point: EditedPoint, waypoint: KeptWaypoint) -> bool:
+    """Whether a point that stays at its place is a manual edit."""
+    is_higher = abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
+    return waypoint.is_by_hand or is_higher or not _is_same_speed(point.speed_mps, waypoint.speed_mps)
+
+
+def _is_same_speed(one_mps: float | None, other_mps: float | None) -> bool:
+    if one_mps is None or other_mps is None:
+        return one_mps is other_mps
+    return abs(one_mps - other_mps) < SAME_SPEED_MPS
 
 
 def route_points(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> RoutePoints:

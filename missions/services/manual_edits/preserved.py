@@ -4,9 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from missions.models import Mission, Route
 from missions.services.manual_edits.checks import ManualEditContext, manual_edit_context
-from missions.services.manual_edits.edits import checked_manual_edit, place_of, settle_manual_edits, store_manual_edit
+from missions.services.manual_edits.edits import checked_manual_edit, places_of, settle_manual_edits, store_manual_edit
 from missions.services.manual_edits.legs import EditedLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
 from operation.reasons import Reason
 from planning.plan import PlannedRoute, PlanWarning
@@ -21,6 +24,7 @@ NOT_KEPT = "by_hand_not_kept"
 class _Kept:
     legs: list[EditedLeg]
     rows: list[Step]
+    points: RoutePoints
     flown: PlannedRoute
 
 
@@ -40,8 +44,7 @@ def keep_by_hand(mission: Mission) -> int:
         kept = None if route is None or route.charging else _kept(mission, route, legs, targets, ground)
         if route is not None and kept is not None:
             route.before_hand = [[step_row(row) for row in route.waypoints.select_related("target")]]
-            by_hand = {place_of(point["position"], point["agl_m"]) for point in kept.rows if point["is_by_hand"]}
-            store_manual_edit(mission, route, kept.flown, by_hand)
+            store_manual_edit(mission, route, kept.flown, places_of(kept.points, _by_hand(kept.rows)))
             count += len(kept.legs)
         missed = len(legs) - (0 if kept is None else len(kept.legs))
         uav = next((row.sequence for row in mission.mission_uavs.all() if row.name == name), None)
@@ -76,11 +79,16 @@ def _tried(
     mission: Mission, route: Route, legs: list[EditedLeg], planned: Sequence[Step], targets: dict[int, Any], ground: ManualEditContext
 ) -> _Kept | None:
     rows = _with_legs(planned, legs, targets)
+    points = RoutePoints.of(step_points(rows))
     try:
-        flown = checked_manual_edit(mission, route, RoutePoints.of(step_points(rows)), ground)
+        flown = checked_manual_edit(mission, route, points, _by_hand(rows), ground)
     except InvalidRequest:
         return None
-    return _Kept(legs, rows, flown)
+    return _Kept(legs, rows, points, flown)
+
+
+def _by_hand(rows: Sequence[Step]) -> NDArray[np.bool_]:
+    return np.array([row["is_by_hand"] for row in rows], dtype=np.bool_)
 
 
 def _with_legs(planned: Sequence[Step], legs: Sequence[EditedLeg], targets: dict[int, Any]) -> list[Step]:

@@ -17,8 +17,9 @@ from tests.missions.plane import EARTH_M, apart_m
 CLEARANCE_M = 15.0
 TALLEST_M = 105.0  # what can be flown over
 HEIGHT_M = 1.0  # what heights may differ by
-STRAY_M = 11.5  # of 10 m that the ground may stray between waypoints; more only between the places that are looked at
-SPACING_M = 40.0
+STRAY_M = 10.1  # of the 10 m that a leg may be off the straight line between the heights of its waypoints; the rest is rounding
+LOWEST_M, HIGHEST_M = 59.4, 120.1  # between targets, where nothing is inspected from lower
+SPACING_M = 5.0
 
 
 class Hills:
@@ -73,6 +74,10 @@ def wrong_heights(plan: dict[str, Any], hills: Hills | None) -> Iterator[str]:
             above_m = amsl_m[leg] + shares * (amsl_m[leg + 1] - amsl_m[leg]) - hills.metres(under)
             if (np.abs(above_m - agl_m[leg] - shares * (agl_m[leg + 1] - agl_m[leg])) > STRAY_M).any():
                 yield f"the ground bulges under {route['uav']} after waypoint {leg}"
+            if min(agl_m[leg], agl_m[leg + 1]) > 60.0 - HEIGHT_M and above_m.min() < LOWEST_M:
+                yield f"{route['uav']} is {above_m.min():.1f} m above ground after waypoint {leg}"
+            if above_m.max() > HIGHEST_M:
+                yield f"{route['uav']} is {above_m.max():.1f} m above ground after waypoint {leg}"
 
 
 class TallThings:

@@ -14,8 +14,10 @@ from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
 from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
 from planning.trajectory.beside_spans import AT_M
+from planning.trajectory.heights import with_heights
 from planning.trajectory.obstacles import rising_over, too_low
 from planning.trajectory.waypoints import NONE, RoutePoint, RoutePoints, WaypointKind, Waypoints
+from tests.planning.trajectory.posted_ground import PostedGround, ground_like
 
 HERE = 56.0
 METRE_DEG = 1.0 / 111_320.0  # of latitude, about
@@ -94,26 +96,22 @@ def test_what_would_have_to_be_passed_above_the_limit_blocks_the_route() -> None
 def test_over_a_valley_a_wire_hangs_higher_above_the_ground_than_at_its_towers() -> None:
     """Towers of 20 m on ground at 130 m; the leg crosses half way between them, where the ground lies at 100 m: 50 m and 15 m more."""
 
-    def ground(position: np.ndarray) -> np.ndarray:
-        return 100.0 + 0.15 * np.abs(position[:, 0] - 10.0) / EAST_DEG
-
+    valley = ground_like(lambda position: 100.0 + 0.15 * np.abs(position[:, 0] - 10.0) / EAST_DEG, 9.99, 56.02, 0.03)
     points = route(60.0, 60.0).points
     crossed = spans((200.0, -200.0, 20.0, 200.0, 200.0, 20.0))
-    flown, blocked = rising_over(Waypoints(points, points.agl_m + 100.0, points.agl_m), crossed, ground, RULES)
-    assert [round(height_m, 6) for height_m in flown.points.agl_m.tolist()] == [60.0, 60.0, 65.0, 65.0, 60.0, 60.0]
-    assert flown.amsl_m is not None and flown.amsl_m[2] == pytest.approx(165.0)
-    assert flown.relative_m[2] == pytest.approx(65.0)
+    flown, blocked = rising_over(Waypoints(points, points.agl_m + 100.0, points.agl_m), crossed, valley.ground, RULES)
+    assert [round(height_m, 3) for height_m in flown.points.agl_m.tolist()] == [60.0, 60.0, 65.0, 65.0, 60.0, 60.0]
+    assert flown.amsl_m is not None and flown.amsl_m[2] == pytest.approx(165.0, abs=1e-3)
+    assert flown.relative_m[2] == pytest.approx(65.0, abs=1e-3)
     assert blocked == ()
     deep = FlightRules(max_agl_m=64.0)
-    assert rising_over(Waypoints(points, points.agl_m + 100.0, points.agl_m), crossed, ground, deep)[1] == (0,)
+    assert rising_over(Waypoints(points, points.agl_m + 100.0, points.agl_m), crossed, valley.ground, deep)[1] == (0,)
 
 
 def test_what_stands_on_ground_that_is_not_known_is_cleared_at_no_height() -> None:
     """One end of the wire stands in a gap of the terrain: the route is not to be flown, and does not rise for it either."""
 
-    def ground(position: np.ndarray) -> np.ndarray:
-        return np.where(position[:, 0] - 10.0 > 50.0 * EAST_DEG, np.nan, 100.0)
-
+    ground = ground_like(lambda position: np.where(position[:, 0] - 10.0 > 50.0 * EAST_DEG, np.nan, 100.0), 9.99, 56.02, 0.03).ground
     points = route(60.0, 60.0).points
     over = Waypoints(points, points.agl_m + 100.0, points.agl_m)
     crossed = spans((200.0, -200.0, 10.0, 200.0, 200.0, 10.0), tower(100.0, 0.0, 80.0), tower(300.0, 0.0, 10.0))
@@ -123,8 +121,8 @@ def test_what_stands_on_ground_that_is_not_known_is_cleared_at_no_height() -> No
     flown, blocked = rising_over(over, crossed, ground, RULES)
     assert blocked == (0,)
     assert flown.points.agl_m.max() == pytest.approx(95.0)
-    assert spans_too_near(over, crossed, ground, RULES) == {0, 1}
-    assert spans_too_near(flown, crossed, ground, RULES) == {0}
+    assert spans_too_near(over, crossed, ground.heights_m, RULES) == {0, 1}
+    assert spans_too_near(flown, crossed, ground.heights_m, RULES) == {0}
 
 
 def inspected(agl_m: float) -> Waypoints:
@@ -182,15 +180,42 @@ def test_no_leg_is_nearer_than_the_clearance_over_anything(places: list[tuple[fl
     standing = spans(*rows)
     flown, blocked = rising_over(drawn, standing, None, RULES)
     assert blocked == ()
-    assert shortest_over(flown, rows) >= RULES.clearance_m - 0.5
+    assert shortest_over(flown.points.position, flown.points.agl_m, rows) >= RULES.clearance_m - 0.5
     assert spans_too_near(flown, standing, None, RULES) == set()
     again = too_low(flown, standing, None, RULES)
     assert again is None or float((again.until - again.begin).max()) < 0.05
 
 
-def shortest_over(flown: Waypoints, rows: list[tuple[float, ...]]) -> float:
+@settings(max_examples=150)
+@given(PLACES, SPANS, st.integers(0, 2**32 - 1), st.sampled_from([1.0, 8.0, 25.0]))
+def test_over_rough_ground_a_risen_route_keeps_the_clearance_and_the_limit(
+    places: list[tuple[float, float, float]], rows: list[tuple[float, ...]], seed: int, rough_m: float
+) -> None:
+    """Looked at every 2 m, with a reader of the ground of its own; blocked are only routes that have to rise above the limit."""
+    ends = [(north, east) for row in rows for north, east in (row[:2], row[3:5])]
+    assume(all(math.hypot(place[0] - north, place[1] - east) > 2.0 * AT_M for place in places for north, east in ends))
+    posts = 700.0 + np.random.default_rng(seed).normal(0.0, rough_m, (60, 60)).cumsum(axis=0)
+    ground = PostedGround(posts, 9.98, HERE + 0.02, 0.001)
+    drawn = RoutePoints.of([RoutePoint(at(north, east), WaypointKind.PASS, agl_m) for north, east, agl_m in places])
+    followed, is_flat = with_heights(drawn, ground.ground, RULES)
+    assert not is_flat
+    standing = spans(*rows)
+    flown, blocked = rising_over(followed, standing, ground.ground, RULES)
+    if blocked:
+        return
+    assert spans_too_near(flown, standing, ground.ground.heights_m, RULES) == set()
+    assert flown.amsl_m is not None
+    feet_m = [ground.metres([at(*row[:2]), at(*row[3:5])]).tolist() for row in rows]
+    tops = [(*row[:2], row[2] + feet[0], *row[3:5], row[5] + feet[1]) for row, feet in zip(rows, feet_m, strict=True)]
+    assert shortest_over(flown.points.position, flown.amsl_m, tops) >= RULES.clearance_m - 0.5
+    steps = flown.points.position[:-1, None] + np.linspace(0.0, 1.0, 100)[:, None] * np.diff(flown.points.position, axis=0)[:, None]
+    levels_m = flown.amsl_m[:-1, None] + np.linspace(0.0, 1.0, 100) * np.diff(flown.amsl_m)[:, None]
+    assert (levels_m.ravel() - ground.metres(steps.reshape(-1, 2))).max() <= RULES.max_agl_m + 0.1
+
+
+def shortest_over(position: np.ndarray, level_m: np.ndarray, rows: list[tuple[float, ...]]) -> float:
     """The fewest metres over any wire less than 24 m beside."""
-    line = np.column_stack([(flown.points.position - (10.0, HERE)) / (EAST_DEG, METRE_DEG), flown.points.agl_m])
+    line = np.column_stack([(position - (10.0, HERE)) / (EAST_DEG, METRE_DEG), level_m])
     least_m = math.inf
     for start, end in pairwise(line):
         share = np.linspace(0.0, 1.0, max(int(np.hypot(*(end - start)[:2]) / 2.0), 1) + 1)
