@@ -11,7 +11,8 @@ from inspection.terrain.tiled_terrain import IntArray, TiledTerrain
 
 Box = tuple[float, float, float, float]
 
-SAME_SHARE = 1e-7  # of a leg: crossings nearer to each other are one, and a piece is looked at so far inside its ends
+SAME_SHARE = 1e-7  # of a leg: crossings nearer to each other are one
+INSIDE_DEG = 1e-6  # from the ends of a piece
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,7 @@ def ground_profile(terrain: TiledTerrain, start: FloatArray, end: FloatArray) ->
     order = np.lexsort((share, leg))
     first, shares = _pieces(leg[order], share[order], len(start))
     heights_m = terrain.heights_at(_looked_at(start, end, first, shares)).heights_m.reshape(-1, 3)
-    _drawn_to_ends(shares, heights_m)
+    _drawn_to_ends(start, end, first, shares, heights_m)
     return GroundProfile(first, shares, heights_m)
 
 
@@ -142,13 +143,20 @@ def _pieces(leg: IntArray, share: FloatArray, legs: int) -> tuple[IntArray, Floa
 
 
 @njit(cache=True, nogil=True)
+def _inside(length: float, leg_deg: float) -> float:
+    """The share of a leg by which a piece of this length is looked at inside its ends, clear of the rounding at edges of tiles."""
+    return min(INSIDE_DEG / leg_deg if leg_deg > 0.0 else 1.0, length / 4.0)
+
+
+@njit(cache=True, nogil=True)
 def _looked_at(start: FloatArray, end: FloatArray, first: IntArray, shares: FloatArray) -> FloatArray:
-    """Positions at begin, middle and end of each piece, just inside of it, (3 p, 2)."""
+    """Positions near the begin, in the middle and near the end of each piece, (3 p, 2)."""
     positions = np.empty((3 * len(shares), 2))
     for leg in range(len(first) - 1):
+        leg_deg = max(abs(end[leg, 0] - start[leg, 0]), abs(end[leg, 1] - start[leg, 1]))
         for piece in range(first[leg], first[leg + 1]):
             begin, until = shares[piece]
-            inside = _inside(until - begin)
+            inside = _inside(until - begin, leg_deg)
             for place, share in enumerate((begin + inside, (begin + until) / 2.0, until - inside)):
                 for axis in range(2):
                     positions[3 * piece + place, axis] = start[leg, axis] + share * (end[leg, axis] - start[leg, axis])
@@ -156,16 +164,13 @@ def _looked_at(start: FloatArray, end: FloatArray, first: IntArray, shares: Floa
 
 
 @njit(cache=True, nogil=True)
-def _inside(length: float) -> float:
-    return min(SAME_SHARE, length / 4.0)
-
-
-@njit(cache=True, nogil=True)
-def _drawn_to_ends(shares: FloatArray, heights_m: FloatArray) -> None:
-    """Turn heights just inside of pieces into those at their ends, as of a straight line: so near the difference is nothing."""
-    for piece in range(len(shares)):
-        length = shares[piece, 1] - shares[piece, 0]
-        inside = _inside(length)
-        more = inside / (length / 2.0 - inside)
-        heights_m[piece, 0] += more * (heights_m[piece, 0] - heights_m[piece, 1])
-        heights_m[piece, 2] += more * (heights_m[piece, 2] - heights_m[piece, 1])
+def _drawn_to_ends(start: FloatArray, end: FloatArray, first: IntArray, shares: FloatArray, heights_m: FloatArray) -> None:
+    """Turn heights near the ends of pieces into those at their ends, by the quadratic through all three."""
+    for leg in range(len(first) - 1):
+        leg_deg = max(abs(end[leg, 0] - start[leg, 0]), abs(end[leg, 1] - start[leg, 1]))
+        for piece in range(first[leg], first[leg + 1]):
+            length = shares[piece, 1] - shares[piece, 0]
+            near = 1.0 - 2.0 * _inside(length, leg_deg) / length  # of half of the piece, from its middle
+            before_m, middle_m, after_m = heights_m[piece]
+            slope_m, bend_m = (after_m - before_m) / (2.0 * near), (after_m + before_m - 2.0 * middle_m) / (2.0 * near * near)
+            heights_m[piece, 0], heights_m[piece, 2] = middle_m - slope_m + bend_m, middle_m + slope_m + bend_m

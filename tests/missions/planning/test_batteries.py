@@ -8,6 +8,7 @@ import pytest
 from django.contrib.gis.gdal import GDALRaster
 
 from inspection.geodesy import LonLat
+from inspection.models import Asset
 from inspection.services import import_terrain
 from missions.services import TargetRequest, make_plan
 from operation.reasons import Reason
@@ -235,20 +236,28 @@ def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_
     """The network's nodes know nothing of the ridge: the search's own figures would say that next to nothing is missing."""
     here = world()
     ridge(tmp_path)
-    drawn_wh = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
-    small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN)
+    least_wh = least_as_drawn_wh(here.towers[5])
+    small = iris(battery_wh=(least_wh - 0.7) / 0.8, end_action=EndAction.RETURN)
     plan = make_plan(request=request(here.towers[5], uavs=(small,)))
     assert reasons(plan) == {0: "beyond_energy"}
-    stated = f"it needs {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the usable battery of Tern: 0.3 min of flight."
+    stated = f"it needs {least_wh:.1f} Wh there and back, 0.7 Wh more than the usable battery of Tern: 0.3 min of flight."
     assert plan["unassigned"][0]["message"] == f"Including terrain and obstacles {stated}"
+    enough = iris(battery_wh=(least_wh + 0.1) / 0.8, end_action=EndAction.RETURN)
+    assert make_plan(request=request(here.towers[5], uavs=(enough,)))["total_energy_wh"] == pytest.approx(least_wh, abs=0.1)
+
+
+def least_as_drawn_wh(tower: Asset) -> float:
+    """What the least route there and back takes as it is drawn, by what a UAV with far too small a battery is told."""
+    tiny = iris(battery_wh=20.0, end_action=EndAction.RETURN)
+    (item,) = make_plan(request=request(tower, uavs=(tiny,)))["unassigned"]
+    return float(item["message"].split("needs ")[1].split(" Wh")[0])
 
 
 def test_who_may_fly_again_takes_a_full_battery_and_charges_at_no_tower(tmp_path: Path) -> None:
     """Not even for what only the drawn route takes, over the ridge: what a refusal says to be missing counts on no charging, either."""
     here = world()
     ridge(tmp_path)
-    drawn_wh = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
-    small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN, sorties=2)
+    small = iris(battery_wh=(least_as_drawn_wh(here.towers[5]) - 0.7) / 0.8, end_action=EndAction.RETURN, sorties=2)
     (item,) = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=300.0))["unassigned"]
     assert item["message"].endswith("there and back, 0.7 Wh more than the usable battery of Tern: 0.3 min of flight.")
 
