@@ -13,7 +13,7 @@ BELOW_M = 0.5  # by which a leg may come lower than planned
 ROUNDING_M = 0.01  # of heights that are stored and sent
 SAG_M = 0.05  # by which the ground may leave a straight line between two of its places that are looked at
 SLACK_M = SAG_M + ROUNDING_M
-LEAST_BAND_M = BELOW_M - 3 * SLACK_M
+MIN_BAND_M = BELOW_M - 3 * SLACK_M
 STEEPEST_M = 1e5  # height per leg; a link that would be steeper is straight up or down
 MAX_CORNERS = 64
 
@@ -132,7 +132,7 @@ def _band(
 def _limits(floor_m: float, planned_m: float, highest_m: float, tolerance_m: float) -> tuple[float, float]:
     low_m = floor_m - BELOW_M + SLACK_M
     high_m = min(planned_m + tolerance_m - BELOW_M, max(highest_m, planned_m)) - SLACK_M
-    return low_m, max(high_m, low_m + LEAST_BAND_M)
+    return low_m, max(high_m, low_m + MIN_BAND_M)
 
 
 @njit(cache=True, nogil=True)
