@@ -19,7 +19,6 @@ import { createFlying } from "./flying/flying_actions.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map/map_panel.js";
 import { uavOf } from "./mission_uavs.js";
-import { mountApprove } from "./panels/approve.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFlying } from "./panels/flying.js";
 import { mountFoot } from "./panels/foot.js";
@@ -129,9 +128,8 @@ if (page.isFrozen) {
   mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
 }
 
-if (page.canPlan) mountApprove(store, flying);
 const scene = mountSceneOpener(sceneOfMission);
-const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage }), {
+const rehearsing = mountRehearsal(store, createRehearsing(store, { isStage }), {
   canRehearse: page.canFly,
   isFrozen: page.isFrozen,
   isStage,
@@ -150,7 +148,7 @@ if (page.canPlan) {
   mountEndings(store, actions);
 } else mountOptionsRead(store);
 mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces });
-mountFoot(store, actions);
+mountFoot(store, actions, { approve: () => void flying.approve(), rehearse: rehearsing.begin });
 const grounds = createGrounds();
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });
 mountProfile(store, { grounds });
@@ -178,7 +176,7 @@ startChrome({
   bindings: [
     { keys: ["/"], words: t("Find an asset"), act: finder.focus },
     ...(page.canPlan ? planningKeys() : []),
-    ...rehearsalKeys,
+    ...rehearsing.bindings,
     ...map.bindings,
     scene.binding,
     { keys: ["f"], words: t("Fit the mission"), act: () => map.fit() },

@@ -135,7 +135,6 @@ def test_a_mission_is_planned_and_saved_on_a_phone_alone(visitor: Visitor, pictu
     page.get_by_role("button", name="Plan", exact=True).tap()
     expect(page.locator("#plan-sentence")).to_contain_text(re.compile("All back in|Done in"))
     picture(page, "phone-alone-planned")
-    page.get_by_role("button", name="Save", exact=True).tap()
     page.wait_for_url(re.compile(r"/missions/[0-9a-f-]{36}"))
     page.get_by_role("navigation", name="Places on a phone").get_by_role("link", name="Missions").tap()
     expect(page.get_by_role("row").filter(has_text="2 targets").first).to_be_visible()

@@ -5,6 +5,7 @@ import { followLive } from "../../live/jobs.js";
 import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "../compare.js";
+import { lackingOf } from "../next_act.js";
 import { qualityOf, wishWordsOf } from "../plan_quality.js";
 import { figuresOf, isPlanCurrent, sentenceOf, unreachedOf } from "../plan_view.js";
 import * as picks from "../selection.js";
@@ -205,18 +206,6 @@ function createShowing({ store, selection, problem }, aside, planAgain) {
     if (picks.basisOf(selection()) === made.basis) aside.want(asked);
     else if (!isPlanCurrent(store.state)) showChanged();
   };
-}
-
-/**
- * What a plan still needs, and what helps; null where it needs nothing.
- *
- * @param {MissionSelection} selection
- * @returns {[string, string] | null}
- */
-function lackingOf({ targets, uavs }) {
-  if (!targets.length) return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
-  if (!uavs.length) return [t("No UAV is chosen."), t("Tick one in the list, or add the first one.")];
-  return null;
 }
 
 /** A new plan for those who do not see it. @param {ShownPlan} made */

@@ -4,6 +4,7 @@ import { freshKey } from "../../api.js";
 import { t } from "../../text.js";
 import { clockText, dayText } from "../../units.js";
 import { UNSAID } from "../flight_options.js";
+import { proposedName } from "../proposed_name.js";
 import { basisOf, requestOf } from "../selection.js";
 
 /** @import { MissionInputRequest, PlanInputRequest } from "../../api_types.d.ts" */
@@ -46,10 +47,11 @@ export function changedParts(selection, stored) {
   return Object.fromEntries(changed.map((part) => [part, now[part]]));
 }
 
-/** @param {string} typed @param {MissionPageState["mission"]} mission */
-const nameOf = (typed, mission) =>
-  typed.trim() ||
+/** @param {Pick<MissionPageState, "name" | "mission" | "selection">} state */
+const nameOf = ({ name, mission, selection }) =>
+  name.trim() ||
   mission?.name ||
+  proposedName(selection.targets) ||
   t("Mission of {day}, {time}", { day: dayText(new Date().toISOString()), time: clockText(Date.now()) });
 
 /**
@@ -62,7 +64,7 @@ export function attemptOf({ mission, plan, planIsStored, stored, selection, name
   const basis = basisOf(selection);
   /** @type {Attempt["body"]} */
   const body = isNew ? requestOf(selection) : changedParts(selection, stored?.selection);
-  const name = nameOf(typed, mission);
+  const name = nameOf({ name: typed, mission, selection });
   if (asCopy) body.name = t("{name} (copy)", { name });
   else if (name !== mission?.name) body.name = name;
   const isPlanNew = isNew || !planIsStored || !stored || basis !== basisOf(stored.selection);

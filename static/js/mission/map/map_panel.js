@@ -19,6 +19,7 @@ import { usesRallyPoints } from "../lost_link.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "../plan_view.js";
 import { staysOf } from "../route_times.js";
 import { isWhole, nameOf } from "../selection.js";
+import { baseView } from "./base_view.js";
 import { mountLostLinkMap } from "./lost_link_map.js";
 import { toolWords } from "./map_picking.js";
 import { mountMapPointer } from "./map_pointer.js";
@@ -160,7 +161,8 @@ function createFitting({ map, fit }, store, extent) {
       map.resize(); // the dock may just have appeared: fit into the remaining space
       const positions = positionsOfMission(store.state);
       const ground = /** @type {Box | null} */ (store.state.ground?.extent ?? extent);
-      fit(positions.length > 1 ? boxAround(positions) : (ground ?? boxAround(positions)), how);
+      const bases = store.state.mission ? null : baseView(store.state.fleet);
+      fit(positions.length > 1 ? boxAround(positions) : (bases ?? ground ?? boxAround(positions)), how);
     },
   };
 }

@@ -23,8 +23,9 @@ import { exactClockText, exactText } from "../../units.js";
 /** @import { Command, Mission, Preflight } from "../../api_types.d.ts" */
 /** @import { Flyer, StatusText } from "../../domain/flying.js" */
 /** @import { MissionPageState, MissionStore } from "../types.d.ts" */
-/** @import { Flying } from "./approve.js" */
+/** @import { createFlying } from "../flying/flying_actions.js" */
 
+/** @typedef {ReturnType<typeof createFlying>} Flying */
 /** @typedef {{ store: MissionStore, canFly: boolean, saveCopy: () => unknown }} FlyingContext */
 
 /**

@@ -1,12 +1,16 @@
-/** The one primary button, saving, and the progress of a long plan. */
+/** The one primary button, which names the next act, and the progress of a long plan. */
 
 import { byId, find } from "../../dom.js";
 import { t } from "../../text.js";
 import { percentText } from "../../units.js";
+import { isSavedOnRequest, lackingOf, nextAct, whyNotApproved, whyNotRehearsed } from "../next_act.js";
 import { bestWordsOf } from "../plan_quality.js";
-import { isUnsaved } from "../plan_view.js";
 
+/** @import { NextAct } from "../next_act.js" */
 /** @import { MissionActions, MissionPageState, MissionStore, Planning } from "../types.d.ts" */
+
+/** @type {NextAct[]} */
+const NEXT = ["plan", "rehearse", "approve"];
 
 /** "51.2 km so far · 40 %"; "waiting" for a job that no planner has taken yet. @param {Planning} planning */
 export function howFarWords(planning) {
@@ -16,31 +20,69 @@ export function howFarWords(planning) {
   return [words, typeof share === "number" ? percentText(share * 100) : ""].filter(Boolean).join(" · ");
 }
 
-/** @param {MissionStore} store @param {MissionActions} actions */
-export function mountFoot(store, actions) {
+/**
+ * The buttons of a mission that can be planned: the next act is primary and stands first.
+ *
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {{ approve: () => unknown, rehearse: () => unknown }} acts
+ */
+export function mountFoot(store, actions, { approve, rehearse }) {
   if (!document.getElementById("plan")) return;
   byId("plan").addEventListener("click", actions.plan);
+  byId("rehearse").addEventListener("click", rehearse);
+  byId("approve").addEventListener("click", approve);
   byId("stop").addEventListener("click", actions.stop);
   byId("cancel-planning").addEventListener("click", actions.cancel);
   byId("save").addEventListener("click", () => actions.save());
   store.listen(
-    ["planning", "saving", "plan", "selection", "name", "mission", "planIsStored", "savedBasis"],
+    [
+      "planning",
+      "saving",
+      "plan",
+      "selection",
+      "name",
+      "mission",
+      "planIsStored",
+      "savedBasis",
+      "rehearsal",
+      "isDispatching",
+      "arrival",
+    ],
     (state) => {
       drawPlan(state);
+      drawLater(state);
       drawSave(state);
+      putFirst(nextAct(state));
     },
   );
   store.listen(["planning"], drawJob);
 }
 
+/** @param {NextAct} act */
+function putFirst(act) {
+  const foot = byId("plan").parentElement;
+  const focused = document.activeElement;
+  for (const name of NEXT) byId(name).classList.toggle("primary", name === act);
+  if (foot?.firstElementChild !== byId(act)) {
+    foot?.prepend(byId(act));
+    if (focused instanceof HTMLElement && foot?.contains(focused)) focused.focus({ preventScroll: true });
+  }
+  const button = byId(act, HTMLButtonElement);
+  byId("why-not-next").textContent = button.disabled ? button.title : "";
+}
+
 /** @param {MissionPageState} state */
-function drawPlan({ planning, plan, saving }) {
-  const button = byId("plan");
+function drawPlan({ planning, plan, saving, selection, arrival }) {
+  const button = byId("plan", HTMLButtonElement);
   const stop = byId("stop", HTMLButtonElement);
   const isBusy = planning !== null;
   const isStopping = Boolean(planning?.isStopping);
+  const lacking = arrival === "whole" && !isBusy ? lackingOf(selection) : null;
   find(button, "span").textContent = isBusy ? t("Planning") : plan ? t("Plan again") : t("Plan");
   button.setAttribute("aria-busy", String(isBusy));
+  button.disabled = lacking !== null;
+  button.title = lacking?.join(" ") ?? "";
   stop.hidden = !isBusy;
   stop.textContent = isStopping ? t("Stopping") : planning?.job ? t("Stop, keep the best") : t("Stop");
   stop.setAttribute("aria-busy", String(isStopping));
@@ -48,15 +90,27 @@ function drawPlan({ planning, plan, saving }) {
   byId("cancel-planning").hidden = !planning?.job || isStopping || saving;
 }
 
+/** What follows planning. @param {MissionPageState} state */
+function drawLater(state) {
+  const { rehearsal, plan, planning, isDispatching } = state;
+  const rehearse = byId("rehearse", HTMLButtonElement);
+  const isFlying = rehearsal.running !== null;
+  rehearse.hidden = nextAct(state) === "plan";
+  rehearse.title = isFlying ? t("A rehearsal is running.") : whyNotRehearsed(state);
+  rehearse.disabled = rehearse.title !== "";
+  const approve = byId("approve", HTMLButtonElement);
+  approve.hidden = !plan || planning !== null;
+  approve.title = whyNotApproved(state);
+  approve.disabled = approve.title !== "" || isDispatching;
+}
+
 /** @param {MissionPageState} state */
 function drawSave(state) {
   const save = byId("save", HTMLButtonElement);
-  const nothing = !isUnsaved(state);
-  save.hidden = state.planning !== null;
+  save.hidden = state.planning !== null || !(isSavedOnRequest(state) || (state.saving && !state.mission));
   save.textContent = state.saving ? t("Saving") : t("Save");
   save.setAttribute("aria-busy", String(state.saving));
-  save.disabled = nothing && !state.mission; // a stored mission answers that it is saved
-  save.title = nothing ? (state.mission ? t("Everything is saved") : t("Nothing to save yet")) : t("Save (Ctrl+S)");
+  save.title = t("Save (Ctrl+S)");
 }
 
 /** Show the progress of a long plan. @param {MissionPageState} state */

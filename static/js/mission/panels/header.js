@@ -15,6 +15,7 @@ import { departureText } from "../flight_options.js";
 import { rehearsalOfPlan } from "../flying/briefing.js";
 import { factsOf } from "../head_facts.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
+import { proposedName } from "../proposed_name.js";
 import { unreachedCards } from "../unreached/cards.js";
 import { showHistory } from "./history.js";
 import { showLegalTimes } from "./options/legal_times.js";
@@ -154,7 +155,9 @@ function itemsFor(mission, actions, { canPlan, canCopy }) {
 /** Title, state and facts. @param {MissionPageState} state @param {boolean} canPlan */
 function drawHead(state, canPlan) {
   const { mission } = state;
-  const shown = state.name || (canPlan ? t("New mission") : t("Map"));
+  const proposed = mission ? "" : proposedName(state.selection.targets);
+  const shown = state.name || proposed || (canPlan ? t("New mission") : t("Map"));
+  if (!mission) byId("mission-name", HTMLInputElement).placeholder = shown;
   byId("page-title").textContent = shown;
   byId("bar-title").textContent = shown;
   document.title = `${shown} · Spanwise`;

@@ -3,7 +3,7 @@
 import { byId, h, refill } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { percentText, whenText } from "../../../units.js";
-import { isPlanCurrent, isUnsaved } from "../../plan_view.js";
+import { whyNotRehearsed } from "../../next_act.js";
 import { isRunning, levelWords } from "../../rehearsal/rehearsal.js";
 import { createAssessment } from "./assessment.js";
 import { mountForm } from "./form.js";
@@ -28,16 +28,7 @@ import { mountForm } from "./form.js";
 /** @param {string} name */
 const place = (name) => byId(`rehearsal-${name}`);
 
-/** Why the plan on the page cannot be rehearsed; empty where it can. @param {MissionPageState} state */
-export function whyNotRehearsed(state) {
-  if (!state.mission) return t("Save the mission first: what is stored is rehearsed.");
-  if (!state.plan) return t("Plan the mission first.");
-  if (!state.mission.plan || !isPlanCurrent(state)) return t("It has changed since it was planned. Plan again first.");
-  if (isUnsaved(state) || !state.planIsStored || state.saving) return t("It is not saved yet.");
-  return "";
-}
-
-/** @param {MissionStore} store @param {Rehearsing} rehearsing @param {RehearsalHow} how @returns {Binding[]} */
+/** @param {MissionStore} store @param {Rehearsing} rehearsing @param {RehearsalHow} how @returns {{ bindings: Binding[], begin: () => void }} */
 export function mountRehearsal(store, rehearsing, how) {
   const { canRehearse, isFrozen, isStage } = how;
   const section = byId("rehearsal");
@@ -79,16 +70,25 @@ export function mountRehearsal(store, rehearsing, how) {
     ["rehearsal", "mission", "plan", "planIsStored", "selection", "name", "savedBasis", "saving", "planning"],
     draw,
   );
-  if (!form) return [];
-  const open = () => {
-    if (section.hidden) return false;
+  if (!form) return { bindings: [], begin: () => {} };
+  const toSection = () => {
     const scrolled = section.closest(".side-scroll"); // the page itself stays where it is
     if (scrolled) scrolled.scrollTop += section.getBoundingClientRect().top - scrolled.getBoundingClientRect().top;
+  };
+  const open = () => {
+    if (section.hidden) return false;
+    toSection();
     if (choice) choice.open = true;
     form.focus();
     return true;
   };
-  return [{ keys: ["r"], words: t("Rehearse: choose conditions"), act: open }];
+  return {
+    bindings: [{ keys: ["r"], words: t("Rehearse: choose conditions"), act: open }],
+    begin() {
+      start();
+      toSection();
+    },
+  };
 }
 
 /** @param {MissionPageState} state @param {boolean} hasConditions */

@@ -1,0 +1,57 @@
+/** The act that comes next for a mission that can be planned, and why it would be refused. Values in, values out. */
+
+import { t } from "../text.js";
+import { rehearsalOfPlan } from "./flying/briefing.js";
+import { isPlanCurrent, isUnsaved, routesOf } from "./plan_view.js";
+
+/** @import { MissionPageState, MissionSelection } from "./types.d.ts" */
+
+/** @typedef {"plan" | "rehearse" | "approve"} NextAct */
+
+/**
+ * Plan until there is a plan of what is picked, rehearse until a rehearsal of it has not failed, then approve.
+ *
+ * @param {Pick<MissionPageState, "plan" | "selection" | "planning" | "rehearsal">} state
+ * @returns {NextAct}
+ */
+export function nextAct(state) {
+  const isPlanned = state.plan !== null && state.planning === null && isPlanCurrent(state);
+  if (!isPlanned || !fliesAny(state)) return "plan";
+  const level = rehearsalOfPlan(state.rehearsal.list ?? [])?.level;
+  return level === "pass" || level === "warnings" ? "approve" : "rehearse";
+}
+
+/** @param {Pick<MissionPageState, "plan">} state */
+const fliesAny = ({ plan }) => routesOf(plan).some(({ geometry }) => geometry);
+
+/**
+ * What a plan still needs, and what helps; null where it needs nothing.
+ *
+ * @param {Pick<MissionSelection, "targets" | "uavs">} selection
+ * @returns {[string, string] | null}
+ */
+export function lackingOf({ targets, uavs }) {
+  if (!targets.length) return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
+  if (!uavs.length) return [t("No UAV is chosen."), t("Tick one in the list, or add the first one.")];
+  return null;
+}
+
+/** Why the plan on the page cannot be approved; empty where it can. @param {MissionPageState} state */
+export function whyNotApproved(state) {
+  if (!isPlanCurrent(state)) return t("It has changed since it was planned. Plan again first.");
+  if (!fliesAny(state)) return t("The plan reaches no target: there is nothing to approve.");
+  if (!state.mission || isUnsaved(state) || !state.planIsStored || state.saving) return t("It is not saved yet.");
+  return "";
+}
+
+/** Why the plan on the page cannot be rehearsed; empty where it can. @param {MissionPageState} state */
+export function whyNotRehearsed(state) {
+  if (!state.mission) return t("Save the mission first: what is stored is rehearsed.");
+  if (!state.plan) return t("Plan the mission first.");
+  if (!state.mission.plan || !isPlanCurrent(state)) return t("It has changed since it was planned. Plan again first.");
+  if (isUnsaved(state) || !state.planIsStored || state.saving) return t("It is not saved yet.");
+  return "";
+}
+
+/** Whether a new mission is stored only on request: a stored one saves itself, a new one with its first plan. @param {MissionPageState} state */
+export const isSavedOnRequest = (state) => !state.mission && isUnsaved(state) && (!state.plan || !isPlanCurrent(state));
