@@ -17,7 +17,7 @@ from workspace.cache_unavailable import CACHE_UNAVAILABLE
 LAST_KEPT_ZOOM = 11
 KEPT_S = 3_600
 MAX_ZOOM = 22
-RECIPE = 6  # part of the ETag: incremented when this file's statements change
+RECIPE = 7  # part of the ETag: incremented when this file's statements change
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
 MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
@@ -86,7 +86,9 @@ def _asset_columns(kind: AssetKind, voltage_v: str = "max_voltage_v") -> str:
 
 
 LINE_COLUMNS, RAILWAY_COLUMNS, BRIDGE_COLUMNS = map(_asset_columns, (AssetKind.LINE, AssetKind.RAILWAY, AssetKind.BRIDGE))
-TOWER_COLUMNS = _asset_columns(AssetKind.TOWER, LINE_VOLTAGE_V)  # its line determines from which zoom a tower is drawn
+TOWER_COLUMNS = (
+    f"{_asset_columns(AssetKind.TOWER, LINE_VOLTAGE_V)}, line_id AS line"  # its line determines from which zoom a tower is drawn
+)
 
 
 @dataclass(frozen=True)

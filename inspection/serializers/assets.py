@@ -27,6 +27,7 @@ class AssetPropertiesSerializer(serializers.Serializer):
     length_m = serializers.FloatField(allow_null=True)
     osm = serializers.CharField(allow_null=True, help_text="type and id, such as w123")
     is_flyable = serializers.BooleanField(help_text="part of the inspection graph")
+    line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
     centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")
     external_id = serializers.CharField(help_text="your organisation's id of it; may be empty")
     attributes = AttributesField(required=True, help_text="your organisation's own")
@@ -74,6 +75,7 @@ def asset_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[s
         "length_m": asset.length_m,
         "osm": f"{asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else None,
         "is_flyable": asset.is_flyable,
+        "line": asset.line_id,
         "centre": [asset.centre.x, asset.centre.y],
         "external_id": reference.external_id if reference else "",
         "attributes": reference.attributes if reference else {},

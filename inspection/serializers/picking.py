@@ -23,6 +23,8 @@ class PickedAssetSerializer(serializers.Serializer):
     detail = serializers.CharField(help_text="the second fact; may be empty")
     length_m = serializers.FloatField(allow_null=True)
     centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")
+    line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
+    voltage_v = serializers.IntegerField(allow_null=True, help_text="highest of the asset, of a support of its line")
 
 
 class LookupInputSerializer(serializers.Serializer):
@@ -108,4 +110,6 @@ def picked_asset(asset: Asset) -> dict[str, Any]:
         "detail": asset_detail(asset),
         "length_m": asset.length_m,
         "centre": [asset.centre.x, asset.centre.y],
+        "line": asset.line_id,
+        "voltage_v": (asset.line.max_voltage_v if asset.line else None) or asset.max_voltage_v,
     }

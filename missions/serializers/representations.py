@@ -145,6 +145,7 @@ def _target(row: InspectionTarget) -> dict[str, Any]:
         "label": row.label if asset is None else asset_label(asset),
         "detail": "" if asset is None else asset_detail(asset),
         "kind": None if asset is None else asset.kind,
+        "line": None if asset is None else asset.line_id,
         "length_m": None if asset is None else asset.length_m,
         "position": None if at is None else list(at.coords),
         "stretch": [list(end) for end in row.stretch.coords] if row.stretch else None,

@@ -29,6 +29,7 @@ class SelectionTargetSerializer(serializers.Serializer):
     detail = serializers.CharField(help_text="the asset's second fact; may be empty")
     length_m = serializers.FloatField(allow_null=True)
     kind = serializers.CharField(allow_null=True)
+    line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
     position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
     stretch = serializers.ListField(child=PositionField(), allow_null=True)
     is_point = serializers.BooleanField()
@@ -83,6 +84,7 @@ def _target(target: KeptTarget) -> dict[str, Any]:
         "detail": "" if asset is None else asset_detail(asset),
         "length_m": None if asset is None else asset.length_m,
         "kind": None if asset is None else asset.kind,
+        "line": None if asset is None else asset.line_id,
         "position": value["position"] or (None if asset is None else list(asset.centre.coords)),
         "stretch": value["stretch"],
         "is_point": value["position"] is not None,

@@ -332,6 +332,7 @@ class MissionTargetSerializer(serializers.Serializer):
     detail = serializers.CharField(help_text="the asset's second fact, as in the list of assets; may be empty")
     length_m = serializers.FloatField(allow_null=True, help_text="of the whole asset, where it is a line or a railway")
     kind = serializers.CharField(allow_null=True)
+    line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
     position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
     stretch = serializers.ListField(child=PositionField(), allow_null=True)
     is_point = serializers.BooleanField(help_text="the operator picked `position`; else it is the whole asset or the stretch")

@@ -459,6 +459,8 @@ export interface components {
             osm: string | null;
             /** @description part of the inspection graph */
             is_flyable: boolean;
+            /** @description of a support: the line of the highest voltage that it carries */
+            line: number | null;
             /** @description lon, lat */
             centre: number[];
             /** @description your organisation's id of it; may be empty */
@@ -550,6 +552,8 @@ export interface components {
             osm: string | null;
             /** @description part of the inspection graph */
             is_flyable: boolean;
+            /** @description of a support: the line of the highest voltage that it carries */
+            line: number | null;
             /** @description lon, lat */
             centre: number[];
             /** @description your organisation's id of it; may be empty */
@@ -3174,6 +3178,8 @@ export interface components {
              */
             length_m: number | null;
             kind: string | null;
+            /** @description of a support: the line of the highest voltage that it carries */
+            line: number | null;
             /**
              * @description as picked, else the asset's centre
              * @example [
@@ -3859,6 +3865,10 @@ export interface components {
             length_m: number | null;
             /** @description lon, lat */
             centre: number[];
+            /** @description of a support: the line of the highest voltage that it carries */
+            line: number | null;
+            /** @description highest of the asset, of a support of its line */
+            voltage_v: number | null;
         };
         /** @enum {string} */
         PlaceEnum: "this-machine" | "private-network" | "internet";
@@ -5947,6 +5957,8 @@ export interface components {
             /** Format: double */
             length_m: number | null;
             kind: string | null;
+            /** @description of a support: the line of the highest voltage that it carries */
+            line: number | null;
             /**
              * @description as picked, else the asset's centre
              * @example [

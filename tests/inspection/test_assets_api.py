@@ -52,6 +52,7 @@ def test_an_asset_is_a_geojson_feature(client: Client) -> None:
                 "length_m": 1_500.0,
                 "osm": "w7",
                 "is_flyable": True,
+                "line": None,
                 "centre": [10.0, 56.0],
                 "external_id": "",
                 "attributes": {},

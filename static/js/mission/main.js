@@ -86,6 +86,7 @@ const BEGINNING = {
   lookedAt: null,
   chosenRoute: null,
   litZones: [],
+  caught: null,
   litReturn: null,
   hand: null,
   commands: null,
@@ -198,6 +199,7 @@ watchMission(store, {
 });
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
+store.listen(["planning"], ({ planning }) => planning && store.update({ tool: "point" })); // picking is over
 
 /**
  * The scene of the mission: the run of a rehearsal that is shown, else the stored plan.
@@ -275,7 +277,8 @@ function shiftChosen(step) {
 
 function closeTop() {
   if (map.closeTop()) return;
-  if (store.state.why) store.update({ why: null });
+  if (store.state.caught) actions.dropCaught();
+  else if (store.state.why) store.update({ why: null });
   else if (store.state.problem) store.update({ problem: null });
   else if (store.state.tool !== "point") store.update({ tool: "point" });
   else store.update({ chosenTarget: null, chosenTargets: [], chosenRoute: null });

@@ -11,6 +11,7 @@ import type {
   Mission,
   MissionUav,
   ObjectiveEnum,
+  PickedAsset,
   Plan,
   Preflight,
   Present,
@@ -73,6 +74,8 @@ export interface PickedTarget extends Partial<Wishes>, Pick<TargetInputRequest, 
   kind: string;
   label: string;
   detail: string;
+  /** id of the line that a support carries */
+  line?: number | null;
   /** one point of a line or railway, or the place itself */
   position: number[] | null;
   /** ends of a part of a line */
@@ -85,7 +88,7 @@ export interface PickedTarget extends Partial<Wishes>, Pick<TargetInputRequest, 
 export interface PickableAsset {
   id: number;
   kind: string;
-  properties: { label: string; detail?: string; length_m?: number | null };
+  properties: { label: string; detail?: string; length_m?: number | null; line?: number | null };
   centre?: number[] | null;
   position?: number[] | null;
   stretch?: number[][] | null;
@@ -361,6 +364,15 @@ export interface RehearsalState {
 }
 
 /** What a click on the map does. */
+/** What a box or a lasso has found. */
+export interface Caught {
+  rows: PickedAsset[];
+  /** rows that are chosen to be added */
+  chosen: PickedAsset[];
+  /** towers of lines that are picked whole: left out */
+  covered: number;
+}
+
 export type Tool = "point" | "box" | "lasso" | "line" | "stretch" | "place" | "rally";
 
 /** What the page knows: the state of its store. */
@@ -410,6 +422,8 @@ export interface MissionPageState {
   lookedAt: number | null;
   chosenRoute: number | null;
   litZones: number[];
+  /** what a box or a lasso has found, before it is added */
+  caught: Caught | null;
   /** key of the failing returns that are pointed at */
   litReturn: string | null;
   hand: HandEdit | null;

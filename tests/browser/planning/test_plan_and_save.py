@@ -184,7 +184,8 @@ def test_shift_drag_takes_the_towers_in_a_box(visitor: Visitor) -> None:
     page.mouse.move(place["x"] + 40, place["y"] + 40, steps=4)
     page.mouse.up()
     page.keyboard.up("Shift")
-    expect(page.get_by_text(re.compile(r"\d+ targets? added from the box\."))).to_be_visible()
+    page.get_by_role("dialog").get_by_role("button", name=re.compile(r"Add \d+ target")).click()
+    expect(page.get_by_text(re.compile(r"\d+ targets? added from the area\."))).to_be_visible()
     assert page.locator("#target-list .target").count() >= 1
 
 

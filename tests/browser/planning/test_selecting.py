@@ -59,7 +59,12 @@ def test_a_lasso_takes_the_towers_and_bridges_inside_it(visitor: Visitor) -> Non
     for east, south in ((60, 0), (0, 60), (-60, 0), (0, -60)):
         page.mouse.move(place["x"] + east, place["y"] + south, steps=4)
     page.mouse.up()
+    caught = page.get_by_role("dialog", name=re.compile(r"\d+ towers? on \d+ lines?|\d+ bridges?"))
+    expect(caught).to_be_visible()
+    expect(rows(page)).to_have_count(0)
+    page.keyboard.press("Enter")
     expect(page.get_by_text(re.compile(r"\d+ targets? added from the area\."))).to_be_visible()
+    expect(page.get_by_role("radio", name="Point")).to_be_checked()  # the tool ends with its act
     assert tower["properties"]["label"] in targets(page)
     page.keyboard.press("Control+z")
     expect(rows(page)).to_have_count(0)

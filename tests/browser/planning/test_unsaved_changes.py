@@ -24,7 +24,7 @@ def opens_mission(page: Page, address: str) -> Page:
 def saves_as(page: Page, name: str) -> None:
     page.get_by_role("textbox", name="Name of the mission").fill(name)
     page.keyboard.press("Tab")
-    page.get_by_role("button", name="Save", exact=True).click()
+    page.keyboard.press("Control+s")
     expect(page.get_by_text(f"“{name}” is saved.")).to_be_visible()
 
 
@@ -163,7 +163,7 @@ def test_an_ended_session_leads_to_the_door_and_back_to_the_selection(visitor: V
     picks_from_the_search(page, f"{region.voltage_kv} kV")
     picked = targets(page)
     page.context.clear_cookies(name="sessionid")
-    page.get_by_role("button", name="Save", exact=True).click()
+    page.keyboard.press("Control+s")
     notice = page.locator("#notices").get_by_role("alert")
     expect(notice).to_contain_text("You are signed out. Your selection is kept in this browser.")
     forgives(visitor, 401)

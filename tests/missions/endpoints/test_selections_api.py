@@ -45,7 +45,8 @@ def test_a_selection_comes_back_as_it_was_kept(client: Client) -> None:
     assert body["author"].startswith("operator-")
     assert [target["label"] for target in body["targets"]] == ["T 1", "North", "North", "56.20000, 10.20000"]
     assert body["targets"][0] == {
-        "asset": mast.pk, "label": "T 1", "detail": "138 kV", "length_m": None, "kind": "tower", "position": [10.0, 56.0], "stretch": None,
+        "asset": mast.pk, "label": "T 1", "detail": "138 kV", "length_m": None, "kind": "tower", "line": None, "position": [10.0, 56.0],
+        "stretch": None,
         "is_point": False, "task": {"kind": "hold", "hold_s": 45.0}, "priority": "high", "sensor": "Lidar",
     }  # fmt: skip
     assert [(target["priority"], target["sensor"]) for target in body["targets"][1:]] == [("normal", "")] * 3

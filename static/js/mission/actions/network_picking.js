@@ -3,6 +3,7 @@
 import { get, post } from "../../api.js";
 import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
+import { notPickedYet } from "../caught.js";
 import * as picks from "../selection.js";
 
 /** @import { Answer } from "../../api.js" */
@@ -20,13 +21,14 @@ export function createNetworkPicking(context, addMany) {
 }
 
 /** @param {MissionContext} context @param {AddMany} addMany */
-function createAreaPicking({ problem, failed }, addMany) {
-  /** Add the assets inside a ring. @param {number[][]} ring @param {{ from?: string }} [how] */
-  async function addArea(ring, { from = t("the area") } = {}) {
+function createAreaPicking({ store, problem, failed, selection }, addMany) {
+  /** Find the assets inside a ring; they are added once they were looked at. @param {number[][]} ring @param {{ from?: string }} [how] */
+  async function catchArea(ring, { from = t("the area") } = {}) {
     try {
       const { data } = /** @type {Answer<WithinOutput>} */ (
         await post("/assets/within", { polygon: { type: "Polygon", coordinates: [ring] } })
       );
+      const { rows, covered } = notPickedYet(data.assets, selection().targets);
       if (data.count > data.assets.length) {
         problem(
           t("{count} assets stand there.", { count: data.count }),
@@ -35,15 +37,16 @@ function createAreaPicking({ problem, failed }, addMany) {
           { untilChanged: true },
         );
       } else if (!data.count) toast(t("No tower and no bridge stands in {area}.", { area: from }));
-      else addMany(rowsToTargets(data.assets), (added) => t("{added} from {area}.", { added, area: from }));
+      else if (!rows.length) toast(t("Already picked."));
+      else store.update({ caught: { rows, chosen: rows, covered } });
     } catch (error) {
       failed(t("The area could not be read."), error);
     }
   }
 
   /** @param {[number, number, number, number]} box */
-  const addBox = ([west, south, east, north]) =>
-    addArea(
+  const catchBox = ([west, south, east, north]) =>
+    catchArea(
       [
         [west, south],
         [east, south],
@@ -53,7 +56,17 @@ function createAreaPicking({ problem, failed }, addMany) {
       { from: t("the box") },
     );
 
-  return { addArea, addBox };
+  return {
+    catchArea,
+    catchBox,
+    /** Add what was found and is chosen; the tool ends with it. */
+    addCaught() {
+      const { caught } = store.state;
+      store.update({ caught: null, tool: "point" });
+      if (caught) addMany(rowsToTargets(caught.chosen), (added) => t("{added} from {area}.", { added, area: t("the area") }));
+    },
+    dropCaught: () => store.update({ caught: null, tool: "point" }),
+  };
 }
 
 /** @param {MissionContext} context @param {AddMany} addMany */

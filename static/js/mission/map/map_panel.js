@@ -16,6 +16,7 @@ import { t, tn } from "../../text.js";
 import { standingUavs } from "../fleet.js";
 import { mountHandMap } from "../hand/hand_map.js";
 import { usesRallyPoints } from "../lost_link.js";
+import { mountCaught } from "../panels/caught.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "../plan_view.js";
 import { staysOf } from "../route_times.js";
 import { isWhole, nameOf } from "../selection.js";
@@ -87,6 +88,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     if (tool !== "point") controls.closeTop();
   });
   mountBanner(store);
+  mountCaught(frame, store, actions);
   describeMap(map, store);
 
   function start() {

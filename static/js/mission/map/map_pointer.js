@@ -4,6 +4,8 @@ import { h } from "../../dom.js";
 import { routeClicks } from "../../map/click_router.js";
 import { createTip } from "../../map/furniture.js";
 import { tipOf } from "../../map/tips.js";
+import { toast } from "../../page/toast.js";
+import { t } from "../../text.js";
 import { createMapPicking } from "./map_picking.js";
 
 /** @import { createTargets } from "../../map/layers/targets.js" */
@@ -65,6 +67,8 @@ export function mountMapPointer(context) {
       const met = tool === "stretch" ? null : targets.at(point);
       if (met) store.update({ chosenTarget: met });
       else if (thing) clickThing(thing, place, point);
+      else if (canPlan)
+        toast(t("Nothing to inspect here. Zoom in, or click nearer to a tower, line, railway or bridge."));
     }
   }
 
@@ -103,9 +107,9 @@ export function mountMapPointer(context) {
     click,
     hover,
     box: (box) => {
-      if (canPlan) void actions.addBox(box);
+      if (canPlan) void actions.catchBox(box);
     },
-    lasso: (ring) => actions.addArea(ring),
+    lasso: (ring) => actions.catchArea(ring),
   });
   return picking;
 }

@@ -59,7 +59,14 @@ export function createPickedShapes(map, store) {
    *
    * @param {Readonly<MissionPageState>} state
    */
-  function ringHovered({ litTarget, selection, stretchFrom }) {
+  function ringHovered({ litTarget, selection, stretchFrom, caught }) {
+    if (caught) {
+      selectionLayer.showHovered(
+        map,
+        caught.chosen.map(({ centre }) => pointAt(centre)),
+      );
+      return;
+    }
     const target = selection.targets.find(({ key }) => key === litTarget);
     const shape = target ? shapeOf(target) : null;
     const begun = stretchFrom ? [pointAt(stretchFrom.centre)] : [];
@@ -83,7 +90,7 @@ export function createPickedShapes(map, store) {
         drawShapes(state);
         void fetchShapes(state.selection.targets);
       });
-      store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
+      store.listen(["litTarget", "selection", "stretchFrom", "caught"], ringHovered);
     },
   };
 }

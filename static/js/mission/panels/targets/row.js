@@ -102,7 +102,7 @@ export function refreshRow(row, target, { place, isMissed, index, arrival, isCho
         : t("Not planned yet"),
   );
   const second = [whoMayFly(target), target.detail].filter(Boolean).join(" · ");
-  find(row, "small").textContent = second;
+  find(row, ".what small").textContent = second;
   find(row, ".what", HTMLElement).title = nameOf({ ...target, detail: second });
   refreshMarks(find(row, ".target-marks", HTMLElement), target, selection);
   const when = find(row, ".target-when", HTMLElement);

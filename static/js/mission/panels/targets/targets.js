@@ -10,6 +10,7 @@ import { isWhole } from "../../selection.js";
 import { targetMenu } from "../../target_menu.js";
 import { createChoosing } from "./choosing.js";
 import { mountChosenBar } from "./chosen_bar.js";
+import { createGroups } from "./group.js";
 import { refreshRow, targetRow } from "./row.js";
 
 /** @import { MissionActions, MissionPageState, MissionStore, PickedTarget } from "../../types.d.ts" */
@@ -22,6 +23,7 @@ import { refreshRow, targetRow } from "./row.js";
  * @property {ReturnType<typeof shownPlaces>["places"]} places
  * @property {ReturnType<typeof shownPlaces>["missed"]} missed
  * @property {string[]} order keys
+ * @property {string[]} visible keys of the rows
  * @property {ReturnType<typeof arrivalsOf>} arrivals
  */
 
@@ -36,8 +38,9 @@ const SHOWN_FIRST = 40;
 export function mountTargets(store, actions, canPlan, showOnMap) {
   let showAll = false;
   /** @type {Shown} */
-  let shown = { places: new Map(), missed: new Set(), order: [], arrivals: new Map() };
+  let shown = { places: new Map(), missed: new Set(), order: [], visible: [], arrivals: new Map() };
   const list = byId("target-list");
+  const groups = createGroups(() => refresh(store.state), SHOWN_FIRST);
   const choosing = createChoosing(store, { canPlan, order: () => shown.order });
   const bar = canPlan ? mountChoosing(list, store, actions, { choosing, refresh: () => refresh(store.state) }) : null;
 
@@ -58,7 +61,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       light: (isLit) => store.update({ litTarget: isLit ? target.key : null }),
       press: (event) => press(event, target),
       pressKey: (event, row) =>
-        pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt: (index) => shown.order[index] }),
+        pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt: (index) => shown.visible[index] }),
       toggle: () => choosing.toggle(target),
       chooseUpTo: () => choosing.upTo(target),
       openTask: (opener) => openTask(opener, target.key, store, actions),
@@ -69,16 +72,18 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     list,
     /** @param {PickedTarget} target */ (target) => target.key,
     make,
-    (row, target, index) =>
+    (row, target) => {
       refreshRow(row, target, {
         place: shown.places.get(target.key),
         isMissed: shown.missed.has(target.key),
-        index,
+        index: shown.order.indexOf(target.key),
         arrival: shown.arrivals.get(target.key) ?? "",
         isChosen: choosing.isChosen(target),
         canPlan,
         selection: store.state.selection,
-      }),
+      });
+      groups.refresh(row, target);
+    },
   );
 
   /** @param {MissionPageState} state */
@@ -87,12 +92,14 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     const { places, missed } = shownPlaces(state);
     const all = inPlanOrder(targets, places);
     const arrivals = isPlanCurrent(state) ? arrivalsOf(state.plan) : new Map();
-    shown = { places, missed, order: all.map((target) => target.key), arrivals };
     if (targets.length <= 1) choosing.turn(false);
     list.classList.toggle("choosing", choosing.isOn());
-    const visible = showAll ? all : all.slice(0, SHOWN_FIRST);
+    const unfolded = choosing.isOn() ? groups.none(all) : groups.unfolded(all);
+    const visible = showAll ? unfolded : unfolded.slice(0, SHOWN_FIRST);
+    const [order, rows] = [all, visible].map((listed) => listed.map((target) => target.key));
+    shown = { places, missed, order, visible: rows, arrivals };
     draw(visible);
-    const rest = all.length - visible.length;
+    const rest = unfolded.length - visible.length;
     byId("show-more").hidden = rest === 0;
     byId("show-more").textContent = tn(rest, "Show {count} more", "Show {count} more");
     byId("target-count").textContent = all.length ? `${all.length}` : "";

@@ -1,0 +1,66 @@
+/** The head of a group of targets on one line, at the first of its rows. */
+
+import { find, h, icon } from "../../../dom.js";
+import { tn } from "../../../text.js";
+import { lineGroups, withoutFolded } from "../../line_groups.js";
+
+/** @import { LineGroup } from "../../line_groups.js" */
+/** @import { PickedTarget } from "../../types.d.ts" */
+
+/**
+ * The groups of the list, and which of them are folded: of a list longer than `most` all, until the user decides.
+ *
+ * @param {() => void} changed
+ * @param {number} most
+ */
+export function createGroups(changed, most) {
+  /** @type {Map<string, LineGroup>} by the key of the first target */
+  let groups = new Map();
+  /** @type {Map<number, boolean>} by line, where the user has decided */
+  const folded = new Map();
+  let isLong = false;
+  /** @param {LineGroup} group */
+  const isFolded = ({ line }) => folded.get(line) ?? isLong;
+  return {
+    /** @param {PickedTarget[]} all */
+    none(all) {
+      groups = new Map();
+      return all;
+    },
+    /** @param {PickedTarget[]} all */
+    unfolded(all) {
+      isLong = all.length > most;
+      const found = lineGroups(all);
+      groups = new Map(found.map((group) => [group.key, group]));
+      return withoutFolded(all, found, isFolded);
+    },
+    /** @param {HTMLElement} row @param {PickedTarget} target */
+    refresh(row, target) {
+      const group = groups.get(target.key);
+      const toggle = () => {
+        if (group) folded.set(group.line, !isFolded(group));
+        changed();
+      };
+      refreshGroup(row, group && { ...group, isFolded: isFolded(group), toggle });
+    },
+  };
+}
+
+/** @param {HTMLElement} row @param {(LineGroup & { isFolded: boolean, toggle: () => void }) | undefined} group */
+function refreshGroup(row, group) {
+  const before = row.querySelector(".group-head");
+  row.classList.toggle("folded", Boolean(group?.isFolded));
+  if (!group) {
+    before?.remove();
+    return;
+  }
+  const head = before ?? h("button", { type: "button", class: "group-head" });
+  if (!before) {
+    head.append(icon("chevron-down", "small"), h("span", {}), h("small", { class: "caption" }));
+    row.prepend(head);
+  }
+  head.setAttribute("aria-expanded", String(!group.isFolded));
+  /** @type {HTMLElement} */ (head).onclick = group.toggle;
+  find(head, "span").textContent = group.words;
+  find(head, "small").textContent = tn(group.keys.length, "{count} target", "{count} targets");
+}
