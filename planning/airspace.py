@@ -190,5 +190,5 @@ def _margin(airspace: Airspace) -> MetZone:
 
 def column_m(agl_m: float, airspace: Airspace) -> tuple[float, float]:
     """From this height to that of the flight to it, with all that a height may stray and that is kept from a zone's limits."""
-    give_m = airspace.flight.terrain_tolerance_m + airspace.context.rules.zones.height_margin_m
-    return min(agl_m, airspace.flight.transit_agl_m) - give_m, max(agl_m, airspace.flight.transit_agl_m) + give_m
+    heights = airspace.context.rules.heights
+    return min(agl_m, airspace.flight.transit_agl_m) - heights.below_m, max(agl_m, airspace.flight.transit_agl_m) + heights.above_m

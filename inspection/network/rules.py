@@ -37,19 +37,24 @@ class FlownHeights:
 
     transit_agl_m: float = 60.0
     clearance_m: float = 15.0  # above what is passed
-    tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints
+    tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints, and a waypoint may lie above what it has to
     margin_m: float = 10.0  # to the limits of zones, for the UAV's own error in height
     max_agl_m: float = 120.0  # what stands higher than that less the clearance cannot be flown over
 
     def band_m(self, heights_m: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest place, above ground, of a UAV that passes assets of these heights, margin included."""
         passed_m = np.maximum(self.transit_agl_m, heights_m + self.clearance_m)
-        return passed_m - self.give_m, passed_m + self.give_m
+        return passed_m - self.below_m, passed_m + self.above_m
 
     @property
-    def give_m(self) -> float:
-        """How far a UAV may be above or below the height that it is to have, margin included."""
+    def below_m(self) -> float:
+        """How far a UAV may be below the height that it is to have, margin included."""
         return self.tolerance_m + self.margin_m
+
+    @property
+    def above_m(self) -> float:
+        """How far a UAV may be above the height that it is to have, margin included: a check counts the tolerance from waypoints."""
+        return 2.0 * self.tolerance_m + self.margin_m
 
     def place_band_m(self, height_m: float | None) -> tuple[float, float]:
         """The same at one place; where the height of what stands there is not known, up to any."""

@@ -100,8 +100,8 @@ def with_heights(
     place = found.leg + 1 + np.arange(len(found.leg))
     is_own = np.ones(len(flown), dtype=np.bool_)
     is_own[place] = False
-    above_sea_m, ground_m = np.empty(len(flown)), np.empty(len(flown))
+    above_sea_m, agl_m = np.empty(len(flown)), np.empty(len(flown))
     above_sea_m[is_own], above_sea_m[place] = found.own_m, found.level_m
-    ground_m[is_own], ground_m[place] = found.own_ground_m, found.ground_m
-    above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground_m, take_off_amsl_m=take_off_m)
-    return Waypoints(flown.at_heights(above_sea_m - ground_m), above_sea_m, above_take_off_m), False
+    agl_m[is_own], agl_m[place] = found.own_agl_m, found.level_m - found.ground_m
+    above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=above_sea_m - agl_m, take_off_amsl_m=take_off_m)
+    return Waypoints(flown.at_heights(agl_m), above_sea_m, above_take_off_m), False

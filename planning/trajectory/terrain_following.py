@@ -16,6 +16,7 @@ SLACK_M = SAG_M + ROUNDING_M
 MIN_BAND_M = BELOW_M - 3 * SLACK_M
 STEEPEST_M = 1e5  # height per leg; a link that would be steeper is straight up or down
 MAX_CORNERS = 64
+HAIR_M = 1e-6  # less is rounding
 
 BoolArray = NDArray[np.bool_]
 
@@ -39,11 +40,11 @@ class HeightBand(NamedTuple):
 
 
 class FollowedTerrain(NamedTuple):
-    """own_m and own_ground_m: each point and the ground there above sea level, (n,). Points to put in, (k,) each, in their order: leg,
+    """own_m and own_agl_m: of each point above sea level and above ground, (n,). Points to put in, (k,) each, in their order: leg,
     share of it, level_m and ground_m likewise."""
 
     own_m: FloatArray
-    own_ground_m: FloatArray
+    own_agl_m: FloatArray
     leg: IntArray
     share: FloatArray
     level_m: FloatArray
@@ -67,7 +68,8 @@ def followed_terrain(
     """
     band = _band(agl_m, floor_agl_m, is_vertical, may_rise, ground.first, ground.share, ground.heights_m, tolerance_m, max_agl_m)
     own_m, leg, share, level_m, ground_m = _followed(band, agl_m)
-    return FollowedTerrain(own_m, band.planned_m - agl_m, leg, share, level_m, ground_m)
+    rise_m = np.where(own_m - band.planned_m > HAIR_M, own_m - band.planned_m, 0.0)
+    return FollowedTerrain(band.planned_m + rise_m, agl_m + rise_m, leg, share, level_m, ground_m)
 
 
 @njit(cache=True, nogil=True)

@@ -100,13 +100,13 @@ def _above(start_m: FloatArray, end_m: FloatArray, limit_m: float) -> tuple[Floa
 
 def low_ceilings(network: Network, zones: ZoneIndex, heights: FlownHeights, clearance_m: float) -> LowCeilings:
     """Where a UAV that flies below all zones at transit height would meet one when it rises over a span."""
-    aloft = zones.where(zones.floor_agl_m > heights.transit_agl_m + heights.give_m)
+    aloft = zones.where(zones.floor_agl_m > heights.transit_agl_m + heights.above_m)
     if not len(aloft):
         return NO_CEILINGS
     pairs, heights_m, _ = hung_between(network, heights.transit_agl_m - heights.clearance_m)
     start, end = network.position[pairs[:, 0]], network.position[pairs[:, 1]]
-    high_m = heights_m.max(axis=1, initial=0.0) + heights.clearance_m + heights.give_m
-    low_m, wide_m = np.full(len(start), heights.transit_agl_m - heights.give_m), clearance_m + BESIDE_M * ROUNDER
+    high_m = heights_m.max(axis=1, initial=0.0) + heights.clearance_m + heights.above_m
+    low_m, wide_m = np.full(len(start), heights.transit_agl_m - heights.below_m), clearance_m + BESIDE_M * ROUNDER
     met, hangs = np.zeros(len(start), dtype=bool), (start != end).any(axis=1)
     met[hangs] = aloft.meets(start[hangs], end[hangs], wide_m, low_m[hangs], high_m[hangs])
     met[~hangs] = aloft.contains(start[~hangs], wide_m, low_m[~hangs], high_m[~hangs])

@@ -191,10 +191,12 @@ def flown_manual_edit(
 ) -> PlannedRoute:
     """Return the route over these points. by_hand (n,): those that a user edited; a leg between them comes no lower than they are.
 
-    Other points may be higher than they need be because of the terrain: a leg between them comes down to the transit height at most.
+    Other points may lie higher than they have to because of the terrain: a leg between them may come lower by the tolerance, not below
+    the transit height.
     """
     flight, action = settings.FLIGHT_RULES, request.end_action(uav)
-    floors_m = np.where(by_hand, points.agl_m, np.minimum(points.agl_m, flight.transit_agl_m))
+    least_m = np.maximum(points.agl_m - flight.terrain_tolerance_m, np.minimum(points.agl_m, flight.transit_agl_m))
+    floors_m = np.where(by_hand, points.agl_m, least_m)
     floors, _length_m = with_short_legs(points.at_heights(floors_m), flight.longest_leg_m)
     points, length_m = with_short_legs(points, flight.longest_leg_m)
     waypoints, is_flat = with_heights(points, ground.terrain, flight, floors.agl_m)

@@ -29,6 +29,7 @@ from tests.missions.property_tests.random_flights import stored
 from workspace.models import User
 
 TRANSIT_M, MAX_HEIGHT_M = 60.0, 120.0
+HIGHER = MORE._replace(height_m=MORE.height_m + 10.0)  # waypoints that are put in over terrain may lie so much above a leg
 ROUNDING_M = 0.06
 SHORT_M = 2.2
 MIN_MPS, HAIR_MPS, SAME_PLACE_M = 0.5, 0.02, 0.01
@@ -148,7 +149,7 @@ class ManualEditOracle:
         own = [legs[leg + 1], *(legs[:1] if leg == 0 else []), *(legs[-1:] if leg >= len(points) - 2 else [])]
         if drawn["end_action"] == "hover":
             own = [one if one.times is None else one._replace(times=(one.times[0], one.times[1] + timedelta(hours=4))) for one in own]
-        return any(zone.name in stated for _, zone in self.judge.zones.met(own, MORE))
+        return any(zone.name in stated for _, zone in self.judge.zones.met(own, HIGHER))
 
     def _is_too_low(self, points: list[dict[str, Any]], place: int, *, is_leg: bool) -> bool:
         """Over a wire, a tower or a bridge beside a leg or a waypoint."""

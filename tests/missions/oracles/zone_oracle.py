@@ -26,7 +26,9 @@ class Margins(NamedTuple):
 
 
 KEPT = Margins(11.3, 19.9, 299.0)  # of 12 m, of 10 m and 10 m that a height may stray, of 5 min; the rest is what the plane is wrong by
-WIDER = Margins(13.2, 20.2, 800.0)  # what keeps off may be as wide as that, as another formula of the sun is 4 min off at both ends
+# What keeps off may be as wide as that: waypoints may lie 10 m higher than they have to, and another formula of the sun is 4 min off at
+# both ends.
+WIDER = Margins(13.2, 30.2, 800.0)
 
 
 class Leg(NamedTuple):

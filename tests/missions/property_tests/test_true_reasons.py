@@ -53,7 +53,8 @@ def test_a_uav_without_the_sensor_and_one_on_the_ground_are_told_apart(here: Wor
 def test_nobody_is_said_to_find_no_way_who_only_stays_on_the_ground(here: World) -> None:
     zone_around((10.02, 55.995), half_deg=0.0005)
     plan = make_plan(request=request(island()[0], uavs=(uav(name="West"), uav((10.02, 55.995), name="East"))))
-    assert message_of(plan) == "There is no permitted route for West. Other UAVs: cannot take off (East)."
+    stated = "There is no permitted route for West. It is not connected to the network of any UAV: the nearest stands 18.7 km away."
+    assert message_of(plan) == f"{stated} Other UAVs: cannot take off (East)."
 
 
 def test_who_is_the_only_one_and_stays_on_the_ground_is_told_why(here: World) -> None:
