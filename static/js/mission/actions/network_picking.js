@@ -63,7 +63,8 @@ function createAreaPicking({ store, problem, failed, selection }, addMany) {
     addCaught() {
       const { caught } = store.state;
       store.update({ caught: null, tool: "point" });
-      if (caught) addMany(rowsToTargets(caught.chosen), (added) => t("{added} from {area}.", { added, area: t("the area") }));
+      if (caught)
+        addMany(rowsToTargets(caught.chosen), (added) => t("{added} from {area}.", { added, area: t("the area") }));
     },
     dropCaught: () => store.update({ caught: null, tool: "point" }),
   };

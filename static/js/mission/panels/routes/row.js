@@ -120,7 +120,10 @@ function figuresOf(route, { result, before, showsBattery }) {
     ),
     h(
       "span",
-      { class: "figure" },
+      {
+        class: "figure",
+        title: landing === null ? null : t("until {time}", { time: timeAt(result.departs_at, landing) }),
+      },
       isUsed ? durationText(route.duration_s) : "—",
       before && h("small", {}, moreOrLess(route.duration_s - before.duration_s, 30, durationText)),
       landing !== null && h("small", {}, t("until {time}", { time: timeAt(result.departs_at, landing) })),

@@ -134,7 +134,7 @@ class WhyPanel {
       return;
     }
     if (why !== this.#shown) this.#opener.remember();
-    byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
+    byId("dock").classList.toggle("with-hand", why.manualEdit !== undefined);
     this.#explain(state, plan, why);
     markRoute(panel, why.route ?? why.manualEdit);
     if (why !== this.#shown || document.activeElement === document.body) this.#title.focus(); // on a phone it comes into sight so
