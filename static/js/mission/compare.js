@@ -2,6 +2,8 @@
 
 import { distance_m } from "../domain/geodesy.js";
 import { profileOf } from "../domain/route_profile.js";
+import { t, tn } from "../text.js";
+import { durationText, lengthText } from "../units.js";
 import { longestDuration_s } from "./plan_view.js";
 import { keyOf, wishesOf } from "./selection.js";
 
@@ -197,4 +199,32 @@ export function profileOfSummary({ length_m, stops, off_network }) {
     targets: stopsOf(stops).map((stop) => ({ target: keyOf(stop), at: stop.at_m })),
     ticks: [],
   };
+}
+
+/**
+ * "+1.2 km", "−3 min", "=": more or less than before.
+ *
+ * @param {number} difference
+ * @param {number} least
+ * @param {(value: number) => string} textOf
+ */
+export function moreOrLess(difference, least, textOf) {
+  if (Math.abs(difference) < least) return "=";
+  return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
+}
+
+/**
+ * "+3 min, −1.1 km, 1 target fewer": a plan against the one before.
+ *
+ * @param {Pick<Plan, "routes" | "total_length_m" | "unassigned">} before
+ * @param {Pick<Plan, "routes" | "total_length_m" | "unassigned">} after
+ */
+export function differenceWords(before, after) {
+  const missed = after.unassigned.length - before.unassigned.length;
+  const parts = [
+    moreOrLess(longestDuration_s(after) - longestDuration_s(before), 30, durationText),
+    moreOrLess(after.total_length_m - before.total_length_m, 50, lengthText),
+  ].filter((words) => words !== "=");
+  if (missed > 0) parts.push(tn(missed, "{count} more target is not reached", "{count} more targets are not reached"));
+  return parts.join(", ") || t("as long and as far as before");
 }

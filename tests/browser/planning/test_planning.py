@@ -117,9 +117,14 @@ def test_a_route_says_where_its_kilometres_come_from(visitor: Visitor) -> None:
     opens_mission(page, "Why this way")
     opener = page.get_by_role("button", name="Why does Kite fly this route?")
     opener.focus()
+    strips = page.locator("#route-list .strip-place")
+    widths = [strip.bounding_box()["width"] for strip in strips.all()]  # type: ignore[index]
     page.keyboard.press("Enter")
     why = page.get_by_role("complementary", name="Why Kite flies this way")
     expect(why.get_by_role("heading", name="Why Kite flies this way")).to_be_focused()
+    assert [strip.bounding_box()["width"] for strip in strips.all()] == widths, "reasons take the profile's place"  # type: ignore[index]
+    assert all(row.bounding_box()["height"] <= 32 for row in page.locator("#route-list .route").all())  # type: ignore[index]
+    expect(page.locator("#route-list .length-figure").first).to_be_visible()
     expect(why).to_contain_text("Straight from target to target")
     expect(why).to_contain_text("Limiting factor:")
     expect(why).to_contain_text(re.compile(r"Giving .* to Heron (would|is not possible)"))

@@ -5,12 +5,12 @@ import {
   counterpart,
   endsBetween,
   isSamePlan,
+  moreOrLess,
   movesBetween,
   profileOfSummary,
   summaryOfPlan,
 } from "../../../static/js/mission/compare.js";
 import { canFly, choicesOf, isAskedFor, standingUavs } from "../../../static/js/mission/fleet.js";
-import { moreOrLess } from "../../../static/js/mission/panels/routes/row.js";
 import { partsOf } from "../../../static/js/mission/panels/why/route.js";
 import { fullUavs, reasonWords } from "../../../static/js/mission/panels/why/target.js";
 import {

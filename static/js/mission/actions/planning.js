@@ -11,6 +11,7 @@ import { figuresOf, isPlanCurrent, sentenceOf, unreachedOf } from "../plan_view.
 import * as picks from "../selection.js";
 import { cancelJob, createPlanBeside, MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
 import { planOf, withResult } from "./plan_results.js";
+import { replanSmallChanges } from "./replanning.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { JobLink } from "../../api_types.d.ts" */
@@ -27,6 +28,7 @@ export function createPlanning(context) {
   const { plan, resume } = createSearch(context, aside, waitForJob);
   showKnownPlans(context, aside);
   rememberLastPlan(context);
+  replanSmallChanges(context, plan);
 
   return {
     plan,

@@ -4,6 +4,7 @@ import { h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { durationText, lengthText } from "../../../units.js";
+import { moreOrLess } from "../../compare.js";
 import { timeAt } from "../../flight_options.js";
 import { endingOf, GROUNDING } from "../../plan_view.js";
 import { batteryOf, delayText, landing_s, staysText } from "../../route_times.js";
@@ -30,18 +31,6 @@ import { batteryOf, delayText, landing_s, staysText } from "../../route_times.js
  * @property {() => void} change edit manually
  * @property {() => void} explain
  */
-
-/**
- * "+1.2 km", "−3 min", "=": more or less than before.
- *
- * @param {number} difference
- * @param {number} least
- * @param {(value: number) => string} textOf
- */
-export function moreOrLess(difference, least, textOf) {
-  if (Math.abs(difference) < least) return "=";
-  return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
-}
 
 /**
  * Whether its UAV cannot take off; the notice and the UAV's row name it.
