@@ -16,6 +16,7 @@ import { rememberedUnder, rememberUnder, rememberUnreachable, underChoices } fro
 import { TILES } from "./look/voltages.js";
 import { createMeasure } from "./measure_tool.js";
 
+/** @import { MenuItem } from "../page/chrome.js" */
 /** @import { Palette } from "../domain/palette.js" */
 /** @import { Ground, MapControls, MapFault, MapLibreMap, MapPage, MapView, Position, SwitchedLayer } from "./types.d.ts" */
 
@@ -31,6 +32,7 @@ const ASK_AGAIN_MS = 8_000;
  * @property {() => boolean} [isBusy] whether another tool uses the pointer
  * @property {(isOn: boolean) => void} [measures]
  * @property {() => SwitchedLayer[]} [layers] more of them for the menu
+ * @property {(place: Position) => MenuItem[]} [placeActs] first in the menu of a place
  */
 
 /**
@@ -221,6 +223,7 @@ function mountPlaceMenu(map, frame, measure, act) {
     byId("map-tip").hidden = true;
     toggleMenu(anchor, () => {
       const menu = menuOf(t("This place"), [
+        ...(act.placeActs?.(place) ?? []),
         { icon: "copy", label: t("Copy the coordinates"), act: () => copyPlace(place) },
         { icon: "ruler", label: t("Measure from here"), act: measureFromHere },
       ]);

@@ -55,6 +55,23 @@ export function targetOf({ id, kind, properties, centre = null, position = null,
   return { key: keyOf(target), ...target };
 }
 
+/** A free place as a target; its label is as the server makes it. @param {readonly number[]} place @returns {PickedTarget} */
+export function placeTarget([longitude, latitude]) {
+  const position = [longitude, latitude].map((degrees) => Number(degrees.toFixed(6)));
+  const label = `${latitude.toFixed(5)}, ${longitude.toFixed(5)}`;
+  const target = {
+    asset: null,
+    kind: "place",
+    label,
+    detail: "",
+    position,
+    stretch: null,
+    centre: position,
+    task: null,
+  };
+  return { key: keyOf(target), ...target };
+}
+
 /** A target from a short row of the API: a list, an area, a stretch. @param {PickedAsset} row */
 export function targetOfRow({ id, kind, centre, ...properties }) {
   return targetOf({ id, kind, properties, centre });

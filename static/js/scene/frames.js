@@ -143,11 +143,14 @@ function createWriting(context) {
     instruments.show(route, subject, readings, Boolean(route?.isSimulated) && !source.isSimulated);
   }
 
+  /** @param {number} place of the route */
+  const isSimulatedAt = (place) => source.routes.some((route) => route.place === place && route.isSimulated);
+
   /** What the picture shows, as a sentence. @param {Shown} shown */
   function describe({ drawn, subject, target }) {
     const camera = rig.mode === "orbit" && target ? `${CAMERA_LONG.orbit} ${target.label}` : CAMERA_LONG[rig.mode];
     const uav = subject
-      ? `${routeLetter(subject.route)} ${subject.name}, ${t("{height} above ground", { height: heightText(subject.height_agl_m) })}, ${certaintyText(subject.moment)}`
+      ? `${routeLetter(subject.route)} ${subject.name}, ${t("{height} above ground", { height: heightText(subject.height_agl_m) })}, ${certaintyText(subject.moment, isSimulatedAt(subject.route))}`
       : "";
     const shown = tn(drawn.length, "{count} UAV", "{count} UAVs");
     const view = stage.isFlat ? t("View from above, without WebGL") : t("3D view");
@@ -201,7 +204,7 @@ function boxesOf(canvas, elements) {
 /** @param {DrawnUav} uav @param {StageState} stage @returns {SceneLabel} */
 function uavLabel({ moment, route, name, place, height_agl_m }, { source, chosen }) {
   const { kind } = moment;
-  const fact = kind === MEASURED || source.kind === "plan" ? heightText(height_agl_m) : certaintyText(moment);
+  const fact = kind === MEASURED || source.kind === "plan" ? heightText(height_agl_m) : certaintyText(moment, false);
   return {
     key: `uav ${route}`,
     place: [place[0], place[1] + 0.5, place[2]],

@@ -233,4 +233,8 @@ FLEET = (
     ("Sparrow 3", "Test wing", "Gate west", "active"),
     ("Sparrow 4", "Test wing", "Gate east", "maintenance"),
     ("Sparrow 5", "Test wing", "Gate east", "retired"),
+    ("Sparrow 6", "Test wing", "Gate east", "maintenance"),
+    ("Sparrow 7", "Test wing", "Gate east", "maintenance"),
+    ("Sparrow 8", "Test wing", "Gate east", "maintenance"),
+    ("Sparrow 9", "Test wing", "Gate east", "maintenance"),
 )

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { isSavedOnRequest, lackingOf, nextAct, whyNotApproved } from "../../../static/js/mission/next_act.js";
-import { basisOf, EMPTY, targetOf } from "../../../static/js/mission/selection.js";
+import { basisOf, EMPTY, placeTarget, requestOf, targetOf } from "../../../static/js/mission/selection.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "E401-7" }, centre: [9, 50] });
 const uav = { id: 1, name: "Heron", position: [9, 50] };
@@ -49,4 +49,10 @@ test("only a new mission without a plan is saved on request", () => {
   assert.equal(isSavedOnRequest(state), false);
   assert.equal(isSavedOnRequest({ ...state, plan: null, selection: EMPTY }), false);
   assert.equal(isSavedOnRequest({ ...state, plan: null, mission: { id: "m", name: "M" } }), false);
+});
+
+test("a place that is clicked with the right button is a target by its coordinates", () => {
+  const target = placeTarget([10.2, 56.2]);
+  assert.equal(target.label, "56.20000, 10.20000");
+  assert.deepEqual(requestOf({ ...EMPTY, targets: [target] }).targets, [{ position: [10.2, 56.2] }]);
 });

@@ -19,7 +19,7 @@ import { usesRallyPoints } from "../lost_link.js";
 import { mountCaught } from "../panels/caught.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "../plan_view.js";
 import { staysOf } from "../route_times.js";
-import { isWhole, nameOf } from "../selection.js";
+import { isWhole, nameOf, placeTarget } from "../selection.js";
 import { baseView } from "./base_view.js";
 import { mountLostLinkMap } from "./lost_link_map.js";
 import { toolWords } from "./map_picking.js";
@@ -77,6 +77,13 @@ export function mountMap(store, actions, page, { askForUav }) {
     },
     recoloured: layers.recolour,
     layers: () => layers.entries(),
+    placeActs: (place) =>
+      page.canPlan
+        ? [
+            { icon: "map-pin", label: t("Inspect here"), act: () => actions.addTargets([placeTarget(place)]) },
+            { icon: "plus", label: t("Add a UAV here"), act: () => askForUav(place) },
+          ]
+        : [],
   });
   const { targets, shapes } = layers;
   const canPlan = page.canPlan;

@@ -62,7 +62,7 @@ export function createInstruments(colours) {
       markSimulated(name, isMarked);
       list.hidden = !drawn;
       empty.hidden = Boolean(drawn);
-      put(certainty, drawn ? certaintyText(drawn.moment) : "");
+      put(certainty, drawn ? certaintyText(drawn.moment, Boolean(route.isSimulated)) : "");
       certainty.dataset.kind = drawn?.moment.kind ?? "";
       for (const reading of readings) {
         const { item, value, note } = row(reading);

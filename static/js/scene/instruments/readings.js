@@ -50,12 +50,13 @@ export function taskText({ kind, target }, labels) {
   }
 }
 
-/** @param {Pick<Moment, "kind" | "bound" | "since_ms">} moment */
-export function certaintyText({ kind, bound, since_ms }) {
+/** @param {Pick<Moment, "kind" | "bound" | "since_ms">} moment @param {boolean} isSimulated its UAV: nothing measures where it is */
+export function certaintyText({ kind, bound, since_ms }, isSimulated) {
   if (kind === ESTIMATED)
     return t("estimated, ±{bound}", { bound: heightText(Math.max(bound?.along_m ?? 0, bound?.across_m ?? 0)) });
   if (kind === LOST) return since_ms ? t("no report since {time}", { time: exactClockText(since_ms) }) : t("no report");
-  return kind === PLANNED ? t("planned") : t("measured");
+  if (kind === PLANNED) return t("planned");
+  return isSimulated ? t("simulated") : t("measured");
 }
 
 /**

@@ -13,7 +13,8 @@ import { refreshRow, uavRow } from "./row.js";
 
 /** @typedef {{ base: string, sensor: string, type: string }} Asked filters of the list */
 
-const MIN_UAVS_TO_FILTER = 4; // a fleet of fewer is seen at a glance
+const MIN_UAVS_TO_FILTER = 8; // a fleet of fewer is seen at a glance
+const MIN_UAVS_TO_CHOOSE_ALL = 4;
 const SHOWN_FIRST = 30;
 
 /**
@@ -85,7 +86,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     more.textContent = tn(uavs.length - visible.length, "Show {count} more", "Show {count} more");
     const free = uavs.filter(isFree);
     const all = byId("choose-uavs");
-    all.hidden = state.fleet.length < MIN_UAVS_TO_FILTER || free.length === 0;
+    all.hidden = state.fleet.length < MIN_UAVS_TO_CHOOSE_ALL || free.length === 0;
     all.textContent = tn(free.length, "Select {count} more", "Select the remaining {count}");
     byId("no-uav-found").hidden = visible.length > 0 || state.fleet.length === 0;
   }
