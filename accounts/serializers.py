@@ -81,6 +81,12 @@ class AccountChangeSerializer(serializers.Serializer):
         return value
 
 
+class MapViewSerializer(serializers.Serializer):
+    zoom = serializers.FloatField(min_value=0, max_value=24)
+    longitude = serializers.FloatField(min_value=-180, max_value=180)
+    latitude = serializers.FloatField(min_value=-90, max_value=90)
+
+
 class PasswordChangeSerializer(serializers.Serializer):
     old_password = serializers.CharField(trim_whitespace=False, max_length=4_096)
     new_password = serializers.CharField(trim_whitespace=False, max_length=4_096)

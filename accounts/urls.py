@@ -6,6 +6,7 @@ from accounts.views import account, organisation, passkeys, service_accounts, se
 
 urlpatterns = [
     path("account", account.Account.as_view(), name="api-account"),
+    path("account/map-view", account.AccountMapView.as_view(), name="api-account-map-view"),
     path("account/password", account.AccountPassword.as_view(), name="api-account-password"),
     path("account/email-address/verification", account.AccountEmailAddress.as_view(), name="api-account-email-address"),
     path("account/passkeys", passkeys.AccountPasskeys.as_view(), name="api-account-passkeys"),

@@ -4,8 +4,8 @@ from typing import Any
 
 from django.conf import settings
 
-from inspection.selectors import map_data
-from workspace.pages import SignedInPage, raster_maps
+from inspection.map_pages import map_page
+from workspace.pages import SignedInPage
 
 
 class GroundPage(SignedInPage):
@@ -18,7 +18,7 @@ class GroundPage(SignedInPage):
         return super().get_context_data(**kwargs) | {"section": self.section, "tab": self.tab}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        return map_data() | raster_maps()
+        return map_page(self.request.user)
 
 
 class AssetsPage(GroundPage):

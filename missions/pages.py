@@ -4,11 +4,11 @@ from typing import Any
 
 from django.http import Http404
 
-from inspection.selectors import map_data
+from inspection.map_pages import map_page
 from missions.models import MissionState
 from missions.selectors.missions import mission_bounds, state_of_mission
 from missions.services.missions import EDITABLE
-from workspace.pages import SignedInPage, raster_maps
+from workspace.pages import SignedInPage
 
 
 class MissionsPage(SignedInPage):
@@ -37,9 +37,8 @@ class MissionPage(SignedInPage):
             "isFrozen": is_frozen,
             "stage": self.stage,
             "mission": str(mission_id) if mission_id else None,
-            **map_data(),
             "bounds": mission_bounds(mission_id) if mission_id else None,
-        } | raster_maps()
+        } | map_page(user)
 
 
 class FleetPage(SignedInPage):
@@ -49,4 +48,4 @@ class FleetPage(SignedInPage):
     extra_context = {"section": "fleet"}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        return map_data() | raster_maps()
+        return map_page(self.request.user)

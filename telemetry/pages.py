@@ -5,10 +5,10 @@ from uuid import UUID
 
 from django.http import Http404
 
-from inspection.selectors import map_data
+from inspection.map_pages import map_page
 from missions.models import Mission, MissionUav
 from missions.selectors.missions import mission_bounds
-from workspace.pages import SignedInPage, raster_maps
+from workspace.pages import SignedInPage
 
 
 class LivePage(SignedInPage):
@@ -18,7 +18,7 @@ class LivePage(SignedInPage):
     extra_context = {"section": "live"}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        return {"canFly": self.request.user.can_plan, "mission": None, **map_data(), "bounds": None} | raster_maps()
+        return {"canFly": self.request.user.can_plan, "mission": None, "bounds": None} | map_page(self.request.user)
 
 
 class MissionStagePage(SignedInPage):
@@ -41,9 +41,8 @@ class MissionStagePage(SignedInPage):
             "mission": str(mission_id),
             "missionName": mission.name,
             "simulates": None if original is None else {"id": str(original.pk), "name": original.name},
-            **map_data(),
             "bounds": mission_bounds(mission_id),
-        } | raster_maps()
+        } | map_page(user)
 
 
 class MissionFlyPage(MissionStagePage):

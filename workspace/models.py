@@ -88,6 +88,7 @@ class User(AbstractUser):
     time_zone = models.CharField(max_length=64, blank=True, help_text="IANA name; empty: the organisation's, else the browser's")
     language = models.CharField(max_length=10, blank=True, default="", help_text="code; empty: the browser's")
     single_keys = models.BooleanField(default=True, help_text="shortcuts of one key on the pages")
+    map_view = models.JSONField(null=True, blank=True, editable=False, help_text="where maps open: zoom, longitude, latitude")
     last_seen_at = models.DateTimeField(null=True, blank=True, editable=False, help_text="to the minute")
     session_generation = models.PositiveIntegerField(default=0, editable=False, help_text="a session of an earlier one has ended")
 

@@ -13,6 +13,7 @@ from accounts.login import LOCAL_SIGN_IN_OFF, PASSWORD_NEEDED, record_sign_in, r
 from accounts.serializers import (
     AccountChangeSerializer,
     AccountSerializer,
+    MapViewSerializer,
     NewTokenSerializer,
     PasswordChangeSerializer,
     SignInPageSerializer,
@@ -29,7 +30,7 @@ from workspace.api.paging import page_of
 from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
-from workspace.models import SignInOutcome
+from workspace.models import SignInOutcome, User
 from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempts, count_attempt
 
 
@@ -64,6 +65,24 @@ class Account(APIView):
         body = AccountChangeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         return Response(AccountSerializer(services.change_account(user=request.user, **body.validated_data)).data)
+
+
+class AccountMapView(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="put_map_view",
+        summary="Where the own pages' maps open",
+        description="Stored when the map has been moved. Not with a token.",
+        request=MapViewSerializer,
+        responses={204: OpenApiResponse(description="Stored.")},
+    )
+    def put(self, request: SignedInRequest) -> Response:
+        body = MapViewSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        User.objects.filter(pk=request.user.pk).update(map_view=body.validated_data)
+        return Response(status=204)
 
 
 class AccountEmailAddress(APIView):

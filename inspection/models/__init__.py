@@ -16,6 +16,7 @@ from inspection.models.imports import (
     Upload,
     UploadPart,
 )
+from inspection.models.regions import Region
 from inspection.models.zones import HeightReference, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "ProposalState",
     "ProposedChange",
     "Railway",
+    "Region",
     "TerrainTile",
     "Upload",
     "UploadPart",

@@ -7,6 +7,7 @@ from django.contrib.gis.db import models
 from django.db.models import Q
 from django.db.models.functions import Now
 
+from inspection.models.regions import Region
 from workspace.models import DEFAULT_ORGANISATION_ID, Job
 
 MAX_REMOVED_PERCENT = 5.0  # of auto_apply, unless stated otherwise
@@ -23,6 +24,7 @@ class DataImport(models.Model):
     """One imported file: the data's source, licence and content."""
 
     kind = models.CharField(max_length=20, choices=ImportKind.choices)
+    region = models.ForeignKey(Region, on_delete=models.SET_NULL, null=True, blank=True, related_name="imports")
     file_name = models.CharField(max_length=255)
     sha256 = models.CharField(max_length=64)
     attribution = models.CharField(max_length=300, blank=True)

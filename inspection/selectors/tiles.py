@@ -30,6 +30,9 @@ BRIDGE_ZOOM = 10
 TOWER_ZOOM = 10
 OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
 ZONE_LABEL_ZOOM = 9
+LAST_COUNT_ZOOM = 7  # up to here cells of a tile say how many assets they have that it does not draw
+COUNT_CELLS = 4  # along a side of a tile
+SMALL_REGION_PX, TILE_PX = 120, 512  # static/js/domain/regions.js
 MAX_SCHEDULE_LENGTH = 4_000  # characters; a tile omits longer schedules
 MAX_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
 MAX_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: more would add no information, and make tiles slow and large
@@ -122,6 +125,26 @@ LAYERS = (
 )  # fmt: skip
 
 
+# Numbers of the assets that a far tile does not draw. A region that is smaller on the screen is a dot with its numbers, drawn by the page.
+# Each cell counts what is within the tile only, so that nothing is counted by two tiles.
+_COUNTS_SQL = f"""COALESCE((
+    SELECT ST_AsMVT(feature, 'counts', {EXTENT}, 'geom') FROM (
+        SELECT count, ST_AsMVTGeom(
+            ST_Transform(place, 3857), ST_TileEnvelope(%(zoom)s, %(column)s, %(row)s), {EXTENT}, {BUFFER}, true) AS geom
+        FROM (
+            SELECT COUNT(*)::int AS count, ST_SetSRID(ST_MakePoint(AVG(ST_X(centre)), AVG(ST_Y(centre))), 4326) AS place
+            FROM inspection_asset asset
+            LEFT JOIN inspection_dataimport source ON source.id = asset.data_import_id
+            LEFT JOIN inspection_region region ON region.id = source.region_id
+            WHERE vanished_at IS NULL AND is_flyable
+              AND NOT COALESCE(asset.kind = 'line' AND max_voltage_v >= %(least_voltage_v)s, false)
+              AND (region.id IS NULL OR ST_XMax(region.extent) - ST_XMin(region.extent) >= %(small_deg)s)
+              AND centre && ST_MakeEnvelope(%(inner_west)s, %(inner_south)s, %(inner_east)s, %(inner_north)s, 4326)
+            GROUP BY FLOOR(ST_X(centre) / %(cell_deg)s), FLOOR(ST_Y(centre) / %(cell_deg)s)
+        ) counted
+    ) feature WHERE geom IS NOT NULL), '')"""  # noqa: S608 - made of the constants above only
+
+
 class NoSuchTile(Exception):
     """Raised for an address outside the pyramid of tiles."""
 
@@ -132,11 +155,14 @@ def vector_tile(zoom: int, column: int, row: int) -> bytes:
         raise NoSuchTile
     layers = [layer for layer in LAYERS if zoom >= layer.from_zoom]
     west, south, east, north = _box_deg(zoom, column, row)
+    inner = _box_deg(zoom, column, row, buffer=0)
     least_voltage_v = HIGH_VOLTAGE_V if zoom < MEDIUM_VOLTAGE_ZOOM else MEDIUM_VOLTAGE_V
     with connection.cursor() as cursor:
         cursor.execute(
-            "SELECT " + " || ".join(_layer_sql(layer) for layer in layers),
+            "SELECT " + " || ".join([*map(_layer_sql, layers), *([_COUNTS_SQL] if zoom <= LAST_COUNT_ZOOM else [])]),
             {
+                "cell_deg": 360 / 2**zoom / COUNT_CELLS, "small_deg": SMALL_REGION_PX * 360 / TILE_PX / 2**zoom,
+                "inner_west": inner[0], "inner_south": inner[1], "inner_east": inner[2], "inner_north": inner[3],
                 "zoom": zoom, "column": column, "row": row, "west": west, "south": south, "east": east, "north": north,
                 "tolerance_deg": 360 / 2**zoom / EXTENT * 4,  # half a pixel of a 512 pixel tile
                 "most": next((most for last_zoom, most in MAX_FEATURES_FAR if zoom <= last_zoom), MAX_FEATURES),
@@ -158,10 +184,10 @@ def _layer_sql(layer: Layer) -> str:
         ) feature), '')"""  # noqa: S608 - made of the constants above only
 
 
-def _box_deg(zoom: int, column: int, row: int) -> tuple[float, float, float, float]:
-    """Return west, south, east, north of the tile with its buffer, in degrees."""
+def _box_deg(zoom: int, column: int, row: int, buffer: int = BUFFER) -> tuple[float, float, float, float]:
+    """Return west, south, east, north of the tile with a buffer in units of the extent, in degrees."""
     size_m = 2 * MERCATOR_LIMIT_M / 2**zoom
-    margin_m = size_m * BUFFER / EXTENT
+    margin_m = size_m * buffer / EXTENT
     west_m = column * size_m - MERCATOR_LIMIT_M
     north_m = MERCATOR_LIMIT_M - row * size_m
     west, south = _lon_lat_deg(west_m - margin_m, north_m - size_m - margin_m)

@@ -1,23 +1,34 @@
-"""Deleting the assets of a whole region."""
+"""Regions: listed, renamed, deleted; and deleting the assets of a box, an import or a set."""
 
 from typing import Any
 
 from django.utils.translation import gettext as _
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.models import AssetSet, DataImport
-from inspection.services.regions import Region, counts_of_region, delete_region
+from inspection.map_pages import region_json
+from inspection.models import AssetSet, DataImport, Region
+from inspection.selectors.ground import regions_in_use
+from inspection.services.regions import (
+    AssetGroup,
+    NameTaken,
+    counts_of_region,
+    counts_of_whole_region,
+    delete_all_of_region,
+    delete_region,
+    rename_region,
+)
 from inspection.views.parameters import invalid
 from workspace.api import strict_serializers as serializers
+from workspace.api.errors import ApiProblem
 from workspace.api.permissions import CURATORS
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import MAX_NUMBER
 
 
 class RegionInputSerializer(serializers.Serializer):
-    """One of bbox, import and set."""
+    """One of bbox, import_id, set and region_id."""
 
     bbox = serializers.ListField(
         child=serializers.FloatField(min_value=-180, max_value=180),
@@ -28,11 +39,14 @@ class RegionInputSerializer(serializers.Serializer):
     )
     import_id = serializers.IntegerField(required=False, min_value=1, max_value=MAX_NUMBER, help_text="a data import")
     set = serializers.CharField(max_length=200, required=False, help_text="the name of a set of assets")
+    region_id = serializers.IntegerField(
+        required=False, min_value=1, max_value=MAX_NUMBER, help_text="a region: its zones and terrain too, and UAVs of the demo"
+    )
     dry_run = serializers.BooleanField(default=False, help_text="only count")
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
-        if sum(name in values for name in ("bbox", "import_id", "set")) != 1:
-            raise serializers.ValidationError(_("Say one of bbox, import_id and set."))
+        if sum(name in values for name in ("bbox", "import_id", "set", "region_id")) != 1:
+            raise serializers.ValidationError(_("Say one of bbox, import_id, set and region_id."))
         if "bbox" in values:
             west, south, east, north = values["bbox"]
             if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south < north <= 90):
@@ -44,12 +58,62 @@ class RegionCountsSerializer(serializers.Serializer):
     counts = serializers.DictField(child=serializers.IntegerField(), help_text="assets by kind that are taken off, or would be")
 
 
+class RegionSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+    extent = serializers.ListField(child=serializers.FloatField(), help_text="west, south, east, north")
+    counts = serializers.DictField(child=serializers.IntegerField(), help_text="assets by kind")
+    is_synthetic = serializers.BooleanField(help_text="some of the data is made, not real")
+    attribution = serializers.ListField(child=serializers.CharField())
+
+
+class RegionListSerializer(serializers.Serializer):
+    results = RegionSerializer(many=True)
+
+
+class RegionNameSerializer(serializers.Serializer):
+    name = serializers.CharField(max_length=200)
+
+
+class RegionList(APIView):
+    @extend_schema(operation_id="list_regions", summary="The regions with map data, by name", responses=RegionListSerializer)
+    def get(self, _request: SignedInRequest) -> Response:
+        return Response({"results": [region_json(row) for row in regions_in_use()]})
+
+
+class RegionDetail(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="rename_region",
+        summary="Rename a region",
+        request=RegionNameSerializer,
+        responses={204: OpenApiResponse(description="Renamed."), 409: OpenApiResponse(description="Another region has this name.")},
+    )
+    def patch(self, request: SignedInRequest, region_id: int) -> Response:
+        body = RegionNameSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        try:
+            rename_region(region=region_of(region_id), name=body.validated_data["name"], actor=request.user)
+        except NameTaken as error:
+            raise ApiProblem(409, "name_taken", _("Another region has this name.")) from error
+        return Response(status=204)
+
+
+def region_of(region_id: int) -> Region:
+    """Return the region. Raises ApiProblem."""
+    region = Region.objects.filter(pk=region_id).first()
+    if region is None:
+        raise ApiProblem(404, "not_found", _("There is no such region."))
+    return region
+
+
 class RegionDelete(APIView):
     write_roles = CURATORS
 
     @extend_schema(
         operation_id="delete_region",
-        summary="Take all assets of a box, an import or a set off the ground",
+        summary="Delete all assets of a box, an import, a set or a region",
         description="What was drawn or edited by hand stays, missions keep what they point at, and the next file brings the rest back.",
         request=RegionInputSerializer,
         responses=RegionCountsSerializer,
@@ -57,20 +121,26 @@ class RegionDelete(APIView):
     def post(self, request: SignedInRequest) -> Response:
         body = RegionInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
+        if "region_id" in body.validated_data:
+            return Response({"counts": self._whole(body.validated_data, request)})
         region = self._region(body.validated_data)
         act = counts_of_region(region) if body.validated_data["dry_run"] else delete_region(region=region, actor=request.user)
         return Response({"counts": act})
 
-    def _region(self, values: dict[str, Any]) -> Region:
+    def _whole(self, values: dict[str, Any], request: SignedInRequest) -> dict[str, int]:
+        region = region_of(values["region_id"])
+        return counts_of_whole_region(region) if values["dry_run"] else delete_all_of_region(region=region, actor=request.user)
+
+    def _region(self, values: dict[str, Any]) -> AssetGroup:
         if "bbox" in values:
             west, south, east, north = values["bbox"]
-            return Region(box=(west, south, east, north))
+            return AssetGroup(box=(west, south, east, north))
         if "import_id" in values:
             row = DataImport.objects.filter(pk=values["import_id"]).first()
             if row is None:
                 raise invalid("import_id", _("There is no such import."))
-            return Region(data_import=row)
+            return AssetGroup(data_import=row)
         found = AssetSet.objects.filter(name=values["set"]).first()
         if found is None:
             raise invalid("set", _("There is no such set."))
-        return Region(asset_set=found)
+        return AssetGroup(asset_set=found)

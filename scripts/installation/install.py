@@ -19,6 +19,7 @@ from pathlib import Path
 
 from scripts.installation import python_libraries, system_packages
 from scripts.installation.python_libraries import CannotInstall
+from scripts.installation.world_outline import write_outline
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 VENV = PROJECT_DIR / ".venv"
@@ -117,7 +118,8 @@ def _python() -> str:
 
 def _page_stamp(is_check: bool) -> list[str]:
     icons = sorted(str(path.relative_to(PROJECT_DIR)) for path in (PROJECT_DIR / "static/img/icons").iterdir())
-    names = ["package.json", "package-lock.json", "scripts/installation/install.py", "scripts/development/build_icons.py", *icons]
+    programs = ["scripts/installation/install.py", "scripts/installation/world_outline.py", "scripts/development/build_icons.py"]
+    names = ["package.json", "package-lock.json", *programs, *icons]
     return [*_digests(*names), *(["with what checks need"] if is_check else [])]
 
 
@@ -155,10 +157,12 @@ def _install_page_libraries(is_check: bool) -> None:
             *(f"dist/maplibre-gl{part}.mjs" for part in ("", "-shared", "-worker")), "dist/maplibre-gl.css", "LICENSE.txt",
         ],
         "three": ["build/three.module.min.js", "build/three.core.min.js", "LICENSE"],
+        "world-atlas": ["LICENSE"],
     }.items():  # fmt: skip
         (served / folder).mkdir(parents=True, exist_ok=True)
         for name in names:
             shutil.copy2(NODE_MODULES / folder / name, served / folder)
+    write_outline(NODE_MODULES / "world-atlas" / "countries-50m.json", served / "world-atlas" / "outline.json")
     _call([_python(), "scripts/development/build_icons.py"])
     shutil.copy2(NODE_MODULES / "lucide-static" / "LICENSE", served / "icons-LICENSE.txt")
     stamp.write_text("\n".join(_page_stamp(is_check)) + "\n")

@@ -2723,6 +2723,14 @@ export interface components {
              */
             hold_s?: number;
         };
+        MapViewRequest: {
+            /** Format: double */
+            zoom: number;
+            /** Format: double */
+            longitude: number;
+            /** Format: double */
+            latitude: number;
+        };
         /**
          * @description * `found` - found
          *     * `several` - several
@@ -3644,6 +3652,9 @@ export interface components {
             parameters?: {
                 [key: string]: unknown;
             };
+        };
+        PatchedRegionNameRequest: {
+            name?: string;
         };
         /** @description A name, and targets as in a mission. UAVs, ties, locks, options, external ids and attributes are not saved. */
         PatchedSelectionInputRequest: {
@@ -4892,13 +4903,26 @@ export interface components {
             code: string;
             message: string;
         };
+        Region: {
+            id: number;
+            name: string;
+            /** @description west, south, east, north */
+            extent: number[];
+            /** @description assets by kind */
+            counts: {
+                [key: string]: number;
+            };
+            /** @description some of the data is made, not real */
+            is_synthetic: boolean;
+            attribution: string[];
+        };
         RegionCounts: {
             /** @description assets by kind that are taken off, or would be */
             counts: {
                 [key: string]: number;
             };
         };
-        /** @description One of bbox, import and set. */
+        /** @description One of bbox, import_id, set and region_id. */
         RegionInputRequest: {
             /** @description west, south, east, north */
             bbox?: number[];
@@ -4906,11 +4930,16 @@ export interface components {
             import_id?: number;
             /** @description the name of a set of assets */
             set?: string;
+            /** @description a region: its zones and terrain too, and UAVs of the demo */
+            region_id?: number;
             /**
              * @description only count
              * @default false
              */
             dry_run: boolean;
+        };
+        RegionList: {
+            results: components["schemas"]["Region"][];
         };
         Rehearsal: {
             /** Format: uuid */
@@ -8201,6 +8230,7 @@ export type LookupResult = components['schemas']['LookupResult'];
 export type LostLinkCheck = components['schemas']['LostLinkCheck'];
 export type LostLinkOutput = components['schemas']['LostLinkOutput'];
 export type LostLinkRequest = components['schemas']['LostLinkRequest'];
+export type MapViewRequest = components['schemas']['MapViewRequest'];
 export type MatchEnum = components['schemas']['MatchEnum'];
 export type Measured = components['schemas']['Measured'];
 export type MeasuredAt = components['schemas']['MeasuredAt'];
@@ -8263,6 +8293,7 @@ export type PatchedBaseRequest = components['schemas']['PatchedBaseRequest'];
 export type PatchedMissionPatchRequest = components['schemas']['PatchedMissionPatchRequest'];
 export type PatchedOrganisationRequest = components['schemas']['PatchedOrganisationRequest'];
 export type PatchedParametersRequest = components['schemas']['PatchedParametersRequest'];
+export type PatchedRegionNameRequest = components['schemas']['PatchedRegionNameRequest'];
 export type PatchedSelectionInputRequest = components['schemas']['PatchedSelectionInputRequest'];
 export type PatchedServiceAccountChangeRequest = components['schemas']['PatchedServiceAccountChangeRequest'];
 export type PatchedSimulationChangeRequest = components['schemas']['PatchedSimulationChangeRequest'];
@@ -8339,8 +8370,10 @@ export type RecordWaypoint = components['schemas']['RecordWaypoint'];
 export type Refused = components['schemas']['Refused'];
 export type RefusedMission = components['schemas']['RefusedMission'];
 export type RefusedReason = components['schemas']['RefusedReason'];
+export type Region = components['schemas']['Region'];
 export type RegionCounts = components['schemas']['RegionCounts'];
 export type RegionInputRequest = components['schemas']['RegionInputRequest'];
+export type RegionList = components['schemas']['RegionList'];
 export type Rehearsal = components['schemas']['Rehearsal'];
 export type RehearsalConditions = components['schemas']['RehearsalConditions'];
 export type RehearsalConditionsCodeEnum = components['schemas']['RehearsalConditionsCodeEnum'];

@@ -9,9 +9,10 @@ from django.contrib.gis.geos import MultiPolygon, Polygon
 from django.test import Client
 from django.utils import timezone, translation
 
-from inspection.models import Asset, Ground, NoFlyZone
+from inspection.models import Asset, DataImport, Ground, NoFlyZone
 from inspection.selectors import asset_detail, asset_label, tile_edition, tile_of_version, vector_tile
 from inspection.services import mark_ground_changed
+from inspection.services.imports.regions import join_region
 from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import bridge, line, railway, tower, zone
 from tests.inspection.vector_tile import Feature, read_tile
@@ -295,3 +296,21 @@ def test_a_tile_of_another_database_with_as_many_changes_is_not_taken_for_this_o
     Ground.objects.all().delete()
     assert mark_ground_changed() == revision
     assert get(client, "0/0/0", **{"If-None-Match": first["ETag"]}).status_code == 200
+
+
+def test_a_far_tile_counts_what_it_does_not_draw() -> None:
+    for place in ((10.0, 56.0), (10.1, 56.05), (10.2, 56.1)):
+        tower(place)
+    line((10.0, 56.0), (10.1, 56.0), voltages_v=[132_000])
+    line((10.0, 56.0), (10.1, 56.0), voltages_v=[20_000])
+    assert sum(feature.properties["count"] for feature in layers_at(6, 10.1, 56.05)["counts"]) == 4
+    assert "counts" not in layers_at(8, 10.1, 56.05)
+
+
+def test_a_region_that_is_a_dot_on_the_map_has_no_numbers_in_its_tiles() -> None:
+    source = DataImport.objects.create(kind="osm", file_name="small.osm.pbf", sha256="0")
+    tower((10.0, 56.0), data_import=source)
+    tower((10.7, 56.3), data_import=source)
+    join_region(source)
+    assert "counts" not in layers_at(4, 10.1, 56.05)
+    assert sum(feature.properties["count"] for feature in layers_at(7, 10.1, 56.05)["counts"]) == 2

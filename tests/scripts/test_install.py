@@ -88,6 +88,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         "package.json",
         "package-lock.json",
         "scripts/installation/install.py",
+        "scripts/installation/world_outline.py",
         "scripts/development/build_icons.py",
         "static/img/icons/one.svg",
     ):

@@ -5,7 +5,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from inspection.models import AssetSet, DataImport
-from inspection.services.regions import Region, counts_of_region, delete_region
+from inspection.services.regions import AssetGroup, counts_of_region, delete_region
 
 
 class Command(BaseCommand):
@@ -27,7 +27,7 @@ class Command(BaseCommand):
         words = ", ".join(f"{number} {kind}" for kind, number in sorted(counts.items())) or "nothing"
         self.stdout.write(f"{words} taken off the ground" if options["yes"] else f"{words} would go; --yes does it")
 
-    def _region(self, options: dict[str, Any]) -> Region:
+    def _region(self, options: dict[str, Any]) -> AssetGroup:
         if options["bbox"]:
             try:
                 west, south, east, north = (float(part) for part in options["bbox"].split(","))
@@ -35,13 +35,13 @@ class Command(BaseCommand):
                 raise CommandError("--bbox is four numbers: west,south,east,north") from error
             if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south < north <= 90):
                 raise CommandError("--bbox reaches beyond the earth, or south is not below north")
-            return Region(box=(west, south, east, north))
+            return AssetGroup(box=(west, south, east, north))
         if options["data_import"] is not None:
             row = DataImport.objects.filter(pk=options["data_import"]).first()
             if row is None:
                 raise CommandError(f"There is no import {options['data_import']}.")
-            return Region(data_import=row)
+            return AssetGroup(data_import=row)
         found = AssetSet.objects.filter(name=options["asset_set"]).first()
         if found is None:
             raise CommandError(f"There is no set {options['asset_set']!r}.")
-        return Region(asset_set=found)
+        return AssetGroup(asset_set=found)

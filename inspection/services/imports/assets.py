@@ -18,6 +18,7 @@ from inspection.models import AssetSet, DataImport, ImportKind
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
 from inspection.services.imports.asset_merge import Merge, Source, staging
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
+from inspection.services.imports.regions import join_region
 from inspection.services.proposals.reading import Progress, Provenance
 from operation.reasons import Reason
 from workspace.models import DEFAULT_ORGANISATION_ID, User
@@ -152,6 +153,7 @@ def import_assets(
             give_ids(asset_set.pk, owner, imported_by.pk if imported_by else None)
         stored = {key: parameters[key] for key in MAPPING_PARAMETERS if parameters.get(key)}
         AssetSet.objects.filter(pk=asset_set.pk).update(data_import=data_import, mapping=stored)
+        join_region(data_import)
         if number_supports() or found.changes_something:
             mark_ground_changed()
     return data_import

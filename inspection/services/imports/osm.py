@@ -22,6 +22,7 @@ from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
 from inspection.models import ROW_ACTIONS, Asset, ChangeAction, DataImport, ImportKind
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
 from inspection.services.imports.asset_merge import UNCHANGED, Merge, Sample, Source, staging
+from inspection.services.imports.regions import join_region
 from inspection.services.proposals.reading import Provenance
 from operation.reasons import Reason
 from workspace.models import User
@@ -112,6 +113,7 @@ def import_osm(
             return known
         data_import.counts = counts
         data_import.save(update_fields=["counts"])
+        join_region(data_import)
     return data_import
 
 

@@ -14,6 +14,7 @@ from inspection.models import DataImport, ImportKind, TerrainTile
 from inspection.reasons import notes_json
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
+from inspection.services.imports.regions import join_region
 from inspection.services.proposals.reading import Provenance
 from inspection.terrain.heights import HeightGrid, packed
 from operation.reasons import Reason
@@ -56,6 +57,7 @@ def import_terrain(
         data_import.counts = _write(data_import, file, datum, progress)
         data_import.save(update_fields=["counts"])
         TerrainTile.objects.filter(data_import__in=imports_of_name(origin.file_name).exclude(pk=data_import.pk)).delete()
+        join_region(data_import)
         mark_ground_changed()
     return data_import
 

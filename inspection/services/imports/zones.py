@@ -19,6 +19,7 @@ from inspection.models import DataImport, ImportKind, ZoneSet
 from inspection.reasons import notes_json
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
+from inspection.services.imports.regions import join_region
 from inspection.services.imports.zone_sets import ZoneDifference, difference_of, keep_what_was, store_version, write_difference
 from inspection.services.proposals.reading import Provenance
 from workspace.models import User
@@ -64,6 +65,7 @@ def import_zones(
         )  # fmt: skip
         make_so(zone_set, found, data_import=data_import, actor=imported_by)
         ZoneSet.objects.filter(pk=zone_set.pk).update(data_import=data_import, source_format=content.source_format)
+        join_region(data_import)
     return data_import
 
 

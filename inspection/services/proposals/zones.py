@@ -11,6 +11,7 @@ from inspection.importers.zones.records import UnreadRecord, ZoneRecord
 from inspection.importers.zones.zone_file import ZoneFileError
 from inspection.models import ChangeAction, DataImport, ImportKind, NoFlyZone, ZoneSet, ZoneSetVersion
 from inspection.services.facts import differing, zone_facts
+from inspection.services.imports.regions import join_region
 from inspection.services.imports.zone_sets import ZoneDifference, difference_of, key_of, record_facts, records_of_version
 from inspection.services.imports.zones import (
     FORMAT_NAMES,
@@ -83,6 +84,7 @@ def _roll_back(version: ZoneSetVersion, actor: User | None) -> DataImport:
     )  # fmt: skip
     make_so(zone_set, found, data_import=data_import, actor=actor, edited=edited)
     ZoneSet.objects.filter(pk=zone_set.pk).update(data_import=data_import)
+    join_region(data_import)
     return data_import
 
 

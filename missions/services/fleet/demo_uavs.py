@@ -1,11 +1,17 @@
-"""The demo region's UAVs with their types and bases."""
+"""The demo region's UAVs with their types and bases: created, and deleted with the region."""
+
+from contextlib import suppress
 
 from django.contrib.gis.geos import Point
 from django.utils import timezone
 
 from inspection.demo_region import BASES, BasedUav, DemoBase
 from missions.models import Base, Uav, UavType
-from workspace.models import Organisation
+from missions.services.commands.refused import Refused
+from missions.services.fleet.rows import FleetRowInUse
+from missions.services.fleet.types_and_bases import delete_base, delete_uav_type
+from missions.services.fleet.uavs import delete_uav
+from workspace.models import Organisation, User
 
 TYPE_FIGURES = ("max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
 
@@ -39,3 +45,24 @@ def _create_uav(uav: BasedUav, base: Base, organisation: Organisation) -> bool:
         },
     )
     return is_new
+
+
+def positions_of_bases(organisation_id: int) -> list[tuple[float, float]]:
+    return [(base.location.x, base.location.y) for base in Base.objects.filter(organisation=organisation_id)]
+
+
+def delete_demo_uavs(actor: User) -> None:
+    """Delete the demo's UAVs of the user's organisation, then the bases and types that they leave. Those in use by missions stay."""
+    organisation = actor.organisation_id
+    for uav in Uav.objects.filter(organisation=organisation, is_demo=True, twin_of=None):
+        with suppress(FleetRowInUse, Refused):
+            delete_uav(uav=uav, actor=actor)
+    for planned in BASES:
+        base = Base.objects.filter(organisation=organisation, name=planned.name, location=Point(*planned.position, srid=4326)).first()
+        if base is not None:
+            with suppress(FleetRowInUse):
+                delete_base(base=base, actor=actor, expected_revision=None)
+    names = {uav.type_name for base in BASES for uav in base.uavs}
+    for uav_type in UavType.objects.filter(organisation=organisation, name__in=names):
+        with suppress(FleetRowInUse):
+            delete_uav_type(uav_type=uav_type, actor=actor, expected_revision=None)

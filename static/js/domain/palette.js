@@ -8,6 +8,7 @@ const NAMES = {
   ink: "--ink",
   inkSecond: "--ink-2",
   graticule: "--map-graticule",
+  outline: "--map-outline",
   label: "--map-label",
   halo: "--map-halo",
   casing: "--map-casing",

@@ -1,10 +1,13 @@
 /** Positions of UAVs and bases, and the pin that sets the place of the edited one. */
 
 import { byId, h, icon } from "../dom.js";
+import { sourcesInView } from "../domain/regions.js";
 import { setAttribution } from "../map/furniture.js";
-import { rememberedUnder } from "../map/look/under.js";
+import { storeLastView } from "../map/last_view.js";
+import { optionsOf, rememberedUnder } from "../map/look/under.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
+import { mountRegionSwitcher } from "../map/region_switcher.js";
 import { onTheme } from "../page/theme.js";
 import { t } from "../text.js";
 
@@ -38,23 +41,27 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
   const container = /** @type {HTMLElement & { project?: MapLibreMap["project"] }} */ (byId("fleet-map"));
   const under = rememberedUnder(page);
   const view = createMap(container, {
-    baseMap: page.baseMap,
-    satellite: page.satellite,
+    ...optionsOf(page),
     under,
     describe: t("Map of the fleet"),
-    bounds: boxOf(rows) ?? page.extent,
-    extent: page.extent,
+    bounds: page.view ? null : boxOf(rows),
+    extent: page.extent ?? boxOf(rows),
   });
   const { map } = view;
   const pin = createPin(map, container);
   /** @type {Marker[]} */
   let markers = [];
 
-  setAttribution([
-    ...(ground?.attribution ?? []),
-    under === "base-map" && page.baseMap.attribution,
-    under === "satellite" && page.satellite.attribution,
-  ]);
+  const attribute = () =>
+    setAttribution([
+      ...sourcesInView(ground, page.regions ?? [], /** @type {Box} */ (map.getBounds().toArray().flat())).attribution,
+      under === "base-map" && page.baseMap.attribution,
+      under === "satellite" && page.satellite.attribution,
+    ]);
+  map.on("moveend", attribute);
+  attribute();
+  storeLastView(map);
+  mountRegionSwitcher(map, page, (box) => view.fit(box));
   onTheme(() => requestAnimationFrame(view.recolour));
   new ResizeObserver(() => map.resize()).observe(container);
   container.project = (position) => map.project(position); // screen place of a position, for tests

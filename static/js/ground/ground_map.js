@@ -5,7 +5,7 @@ import { piecesOf, routeClicks } from "../map/click_router.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as selectionLayer from "../map/layers/selection.js";
-import { rememberedUnder } from "../map/look/under.js";
+import { optionsOf } from "../map/look/under.js";
 import { createMap } from "../map/map_view.js";
 import { tilesAddress } from "../map/tiles_address.js";
 import { tipOf } from "../map/tips.js";
@@ -30,12 +30,8 @@ export function mountGroundMap(page, on = {}) {
   /** @type {Ground | null} */
   let ground = null;
   const view = createMap(container, {
-    baseMap: page.baseMap,
-    satellite: page.satellite,
-    under: rememberedUnder(page),
+    ...optionsOf(page),
     describe: t("Map"),
-    bounds: page.extent,
-    extent: page.extent,
   });
   const { map } = view;
   /** @type {Set<(palette: Palette) => void>} */
@@ -75,7 +71,7 @@ export function mountGroundMap(page, on = {}) {
     box: (box) => on.box?.(box),
   });
 
-  const extent = () => /** @type {Box | null} */ (ground?.extent ?? page.extent);
+  const extent = () => view.home() ?? /** @type {Box | null} */ (ground?.extent ?? null);
   /** @param {Box | null} box @param {{ animate?: boolean }} [options] */
   function fit(box, options) {
     map.resize(); // the dock may just have appeared: fit into the remaining space

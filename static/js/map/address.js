@@ -32,12 +32,18 @@ export function hashOf({ zoom, centre: [longitude, latitude] }) {
  * @param {{ zoom: number, centre: Position }} view
  * @param {[number, number]} size width, height [px]
  * @param {Box | null | undefined} extent
+ * @param {number} [least_px] size of the extent from which it is recognisable
  */
-export function showsAnything({ zoom, centre: [longitude, latitude] }, [width_px, height_px], extent) {
+export function showsAnything(
+  { zoom, centre: [longitude, latitude] },
+  [width_px, height_px],
+  extent,
+  least_px = MIN_PX,
+) {
   if (!extent) return true;
   const scale = WORLD_PX * 2 ** zoom;
   const [left, right] = [extent[0], extent[2]].map((edge) => (toX(edge) - toX(longitude)) * scale);
   const [top, bottom] = [extent[3], extent[1]].map((edge) => (toY(edge) - toY(latitude)) * scale);
   const isInside = right >= -width_px / 2 && left <= width_px / 2 && bottom >= -height_px / 2 && top <= height_px / 2;
-  return isInside && (zoom >= NEAR_ZOOM || Math.max(right - left, bottom - top) >= MIN_PX);
+  return isInside && (zoom >= NEAR_ZOOM || Math.max(right - left, bottom - top) >= least_px);
 }

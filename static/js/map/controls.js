@@ -1,6 +1,7 @@
 /** Controls of every map: zoom, fit, layers, measuring, coordinates, and a notice when tiles cannot be read. */
 
 import { byId, h, icon } from "../dom.js";
+import { sourcesInView } from "../domain/regions.js";
 import { copiedAt } from "../offline_copy.js";
 import { closeMenu, menuOf, toggleMenu } from "../page/chrome.js";
 import { copyText } from "../page/clipboard.js";
@@ -9,16 +10,18 @@ import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { coordinateText } from "../units.js";
 import { mountCoordinates, mountScale, setAttribution } from "./furniture.js";
+import { storeLastView } from "./last_view.js";
 import { layersMenu } from "./look/layers_menu.js";
 import { mountLegend } from "./look/legend.js";
 import { createShown } from "./look/shown.js";
 import { rememberedUnder, rememberUnder, rememberUnreachable, underChoices } from "./look/under.js";
 import { TILES } from "./look/voltages.js";
 import { createMeasure } from "./measure_tool.js";
+import { mountRegionSwitcher } from "./region_switcher.js";
 
 /** @import { MenuItem } from "../page/chrome.js" */
 /** @import { Palette } from "../domain/palette.js" */
-/** @import { Ground, MapControls, MapFault, MapLibreMap, MapPage, MapView, Position, SwitchedLayer } from "./types.d.ts" */
+/** @import { Box, Ground, MapControls, MapFault, MapLibreMap, MapPage, MapView, Position, SwitchedLayer } from "./types.d.ts" */
 
 const COPIED_DIGITS = 6; // some 0.1 m
 const ASK_AGAIN_MS = 8_000;
@@ -64,12 +67,20 @@ export function mountControls(view, page, act) {
     }),
   );
 
-  const attribute = () =>
+  const regions = page.regions ?? [];
+  function attribute() {
+    const box = /** @type {Box} */ (map.getBounds().toArray().flat());
+    const seen = sourcesInView(ground, regions, box);
+    byId("demo-badge").hidden = !seen.isDemo;
     setAttribution([
-      ...(ground?.attribution ?? []),
+      ...seen.attribution,
       under.chosen() === "base-map" && page.baseMap.attribution,
       under.chosen() === "satellite" && page.satellite.attribution,
     ]);
+  }
+  map.on("moveend", attribute);
+  storeLastView(map);
+  mountRegionSwitcher(map, page, (box) => view.fit(box));
   const under = chooseUnder(view, page, () => attribute());
   mountLayersButton(map, under, act);
   const measure = createMeasure(map, frame, byId("measure"), { onSwitch: act.measures, isBusy: act.isBusy });
@@ -92,7 +103,6 @@ export function mountControls(view, page, act) {
     setGround(next) {
       ground = next;
       attribute();
-      byId("demo-badge").hidden = !ground?.is_synthetic;
       byId("map-empty").hidden = !ground || ground.extent !== null;
     },
     closeTop: measure.end,

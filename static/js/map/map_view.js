@@ -1,15 +1,18 @@
 /** The map itself: made once, coloured again when the theme changes, with its camera. */
 
 import { readPalette } from "../domain/palette.js";
+import { regionAt } from "../domain/regions.js";
 import { COPY_HEADER, copiedAt } from "../offline_copy.js";
 import { hashOf, showsAnything, viewOf } from "./address.js";
 import * as graticule from "./layers/graticule.js";
+import * as regionsLayer from "./layers/regions.js";
 import { provideImages } from "./look/images.js";
+import { createOutline } from "./look/outline.js";
 import { mapStyle, repaint } from "./look/style.js";
 import { maplibre } from "./maplibre.js";
 import { tilesAddress } from "./tiles_address.js";
 
-/** @import { Box, MapFault, MapLibreMap, MapOptions, MapView } from "./types.d.ts" */
+/** @import { Box, MapFault, MapLibreMap, MapOptions, MapView, Position } from "./types.d.ts" */
 
 /** @type {Box} */
 const WORLD = [-12, 25, 40, 62]; // where there are no map data
@@ -19,26 +22,38 @@ const CONTROLS_PX = 68; // they are at the right edge
 const FOOT_GAP_PX = 24;
 
 /**
- * Create the map. It opens at the view in the page's address if that shows some of `extent`, else at `bounds`.
+ * Create the map. It opens at the view in the page's address if that shows some of the data, else at `bounds`, else where the user worked
+ * last, else at `extent`.
  *
  * @param {HTMLElement} container
- * @param {MapOptions} options
+ * @param {MapOptions} opening
  * @returns {MapView}
  */
-export function createMap(container, { baseMap, satellite, under, describe, bounds, extent }) {
+export function createMap(container, opening) {
+  const { baseMap, satellite, under, describe, bounds, extent, regions = [], view: lastView } = opening;
   const options = { tilesAddress: tilesAddress(), baseMap, satellite, under };
   let palette = readPalette();
-  const addressed = () => {
-    const view = viewOf(location.hash);
-    return view && showsAnything(view, [container.clientWidth, container.clientHeight], extent) ? view : null;
+  const boxes = regions.length ? [...regions.map((region) => region.extent), ...(bounds ? [bounds] : [])] : [extent];
+  /** @param {{ zoom: number, centre: Position } | null} view */
+  const worthwhile = (view) => {
+    const size = /** @type {[number, number]} */ ([container.clientWidth, container.clientHeight]);
+    const least_px = regions.length ? 0 : undefined; // from afar a region is a dot with its name
+    return view && boxes.some((box) => showsAnything(view, size, box, least_px)) ? view : null;
   };
-  const opened = addressed();
+  const addressed = () => worthwhile(viewOf(location.hash));
+  const inAddress = addressed();
+  const opened =
+    inAddress ??
+    (bounds || !lastView ? null : worthwhile({ zoom: lastView.zoom, centre: [lastView.longitude, lastView.latitude] }));
   const map = new maplibre.Map({
     container,
     style: mapStyle(palette, options),
     ...(opened
       ? { center: opened.centre, zoom: opened.zoom }
-      : { bounds: bounds ?? WORLD, fitBoundsOptions: { padding: paddingIn(container), maxZoom: NEAREST_FIT } }),
+      : {
+          bounds: bounds ?? extent ?? WORLD,
+          fitBoundsOptions: { padding: paddingIn(container), maxZoom: NEAREST_FIT },
+        }),
     ...(copiedAt === null ? {} : { transformRequest: (url) => ({ url, headers: { [COPY_HEADER]: copiedAt } }) }),
     attributionControl: false,
     dragRotate: false,
@@ -52,8 +67,12 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
   map.touchZoomRotate.disableRotation();
   map.keyboard.disableRotation();
   const redrawImages = provideImages(map, () => palette);
-  map.on("load", () => graticule.addTo(map));
-  let keepsAddress = opened !== null;
+  map.on("load", () => {
+    graticule.addTo(map);
+    regionsLayer.addTo(map, regions, (box) => fitTo(box, 0));
+    outline.start();
+  });
+  let keepsAddress = inAddress !== null;
   map.on("moveend", () => {
     if (keepsAddress)
       history.replaceState(history.state, "", hashOf({ zoom: map.getZoom(), centre: map.getCenter().toArray() }));
@@ -65,11 +84,14 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
   showFaults(map);
 
   const fitTo = keepFitted(map, container);
+  const outline = createOutline(map, !under);
 
   return {
     map,
     palette: () => palette,
     opensAtPlace: opened !== null,
+    opensAtLastView: opened !== null && inAddress === null,
+    home: () => regionAt(regions, /** @type {Position} */ (map.getCenter().toArray()))?.extent ?? extent ?? null,
     ready: new Promise((resolve) => map.once("load", resolve)),
     recolour() {
       palette = readPalette();
@@ -81,6 +103,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
       for (const id of ["base-map", "satellite"]) {
         if (map.getLayer(id)) map.setLayoutProperty(id, "visibility", id === name ? "visible" : "none");
       }
+      outline.turn(!name);
     },
     show(layers, visible) {
       for (const id of layers) map.setLayoutProperty(id, "visibility", visible ? "visible" : "none");

@@ -53,10 +53,33 @@ export interface RasterMap {
   attribution: string;
 }
 
+/** A named place with map data. */
+export interface Region {
+  id: number;
+  name: string;
+  extent: Box;
+  /** assets by kind */
+  counts: Record<string, number>;
+  is_synthetic: boolean;
+  attribution: string[];
+}
+
+/** Where the user worked last. */
+export interface LastView {
+  zoom: number;
+  longitude: number;
+  latitude: number;
+}
+
 /** What the server writes into a page with a map. */
 export interface MapPage {
   baseMap: RasterMap;
   satellite: RasterMap;
+  regions?: Region[];
+  view?: LastView | null;
+  /** of the region where the user works */
+  extent?: Box | null;
+  canCurate?: boolean;
 }
 
 export interface StyleOptions {
@@ -71,6 +94,10 @@ export interface MapView {
   map: MapLibreMap;
   palette(): Palette;
   opensAtPlace: boolean;
+  /** Whether the map opened where its user worked last. */
+  opensAtLastView: boolean;
+  /** The extent of the region in the middle of the map, else of the one where the user works. */
+  home(): Box | null;
   ready: Promise<unknown>;
   recolour(): void;
   putUnder(name: string): void;
@@ -91,8 +118,11 @@ export interface MapOptions {
   under?: string;
   /** the map's name for screen readers */
   describe: string;
+  /** of what the page is about: it comes before the last view */
   bounds?: Box | null;
   extent?: Box | null;
+  regions?: Region[];
+  view?: LastView | null;
 }
 
 /** A layer of the page that its layers menu switches. */

@@ -7,7 +7,7 @@ import { routeLetter } from "../domain/palette.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
-import { rememberedUnder } from "../map/look/under.js";
+import { optionsOf } from "../map/look/under.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
 import { showTipsOnly } from "../map/tips_only.js";
@@ -136,12 +136,9 @@ function describe({ routes, targets }) {
 /** @param {HTMLElement} container @param {ReportPage} page */
 const openMap = (container, page) =>
   createMap(container, {
-    baseMap: page.baseMap,
-    satellite: page.satellite,
-    under: rememberedUnder(page),
+    ...optionsOf(page),
     describe: t("Map"),
-    bounds: page.bounds ?? page.extent,
-    extent: page.extent,
+    bounds: page.bounds,
   });
 
 /** Read the sources of the map data; the map works without them, too. @param {MapControls} controls */

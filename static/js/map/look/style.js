@@ -1,5 +1,6 @@
 /** The map's style as data: sources and layers from bottom to top, made from the palette. */
 
+import { countLayers, outlineLayers, regionLayers } from "./far_layers.js";
 import { infrastructureLayers, labelLayers } from "./ground_layers.js";
 import { measureLayers, routeLayers, selectionLayers } from "./page_layers.js";
 import { TILES } from "./voltages.js";
@@ -43,6 +44,7 @@ export function mapStyle(palette, options) {
     version: 8,
     sources: {
       ...Object.fromEntries(raster.map(([id, layer]) => [id, rasterSource(layer)])),
+      outline: EMPTY,
       graticule: EMPTY,
       [TILES]: { type: "vector", tiles: [options.tilesAddress], minzoom: 0, maxzoom: 15 },
       "picked-shapes": EMPTY,
@@ -53,10 +55,12 @@ export function mapStyle(palette, options) {
       "many-targets": EMPTY,
       selection: EMPTY,
       measure: EMPTY,
+      regions: EMPTY,
     },
     layers: [
       { id: "ground", type: "background", paint: { "background-color": palette.ground } },
       ...raster.map(([id]) => rasterLayer(id, palette, options.under === id)),
+      ...outlineLayers(palette, !options.under),
       {
         id: "graticule",
         type: "line",
@@ -66,6 +70,8 @@ export function mapStyle(palette, options) {
       ...infrastructureLayers(palette),
       ...routeLayers(palette),
       ...labelLayers(palette),
+      ...countLayers(palette),
+      ...regionLayers(palette),
       ...selectionLayers(palette),
       ...measureLayers(palette),
     ],

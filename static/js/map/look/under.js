@@ -12,6 +12,16 @@ const offered = (page) => [...(page.baseMap.tiles ? ["base-map"] : []), ...(page
 /** @type {Record<string, string>} */
 const WORDS = { "base-map": t("Map"), satellite: t("Satellite") };
 
+/** What a map takes from its page. @param {MapPage} page */
+export const optionsOf = (page) => ({
+  baseMap: page.baseMap,
+  satellite: page.satellite,
+  under: rememberedUnder(page),
+  extent: page.extent,
+  regions: page.regions,
+  view: page.view,
+});
+
 /** @param {MapPage} page */
 export function underChoices(page) {
   return [{ value: "", words: t("None") }, ...offered(page).map((value) => ({ value, words: WORDS[value] }))];

@@ -1,13 +1,14 @@
 /** The map of a mission: draws the store's state and passes pointer events to the actions. */
 
 import { byId, h } from "../../dom.js";
+import { isAround } from "../../domain/regions.js";
 import { mountControls } from "../../map/controls.js";
 import * as rehearsedLayer from "../../map/layers/rehearsed.js";
 import * as routesLayer from "../../map/layers/routes.js";
 import { createTargets } from "../../map/layers/targets.js";
 import { createUavs } from "../../map/layers/uavs.js";
 import * as zonesLayer from "../../map/layers/zones.js";
-import { rememberedUnder } from "../../map/look/under.js";
+import { optionsOf } from "../../map/look/under.js";
 import { TILES } from "../../map/look/voltages.js";
 import { boxAround, createMap } from "../../map/map_view.js";
 import { goTo } from "../../map/places_found.js";
@@ -57,17 +58,15 @@ const positionsOf = (shape) =>
 export function mountMap(store, actions, page, { askForUav }) {
   const container = byId("map");
   const frame = /** @type {HTMLElement} */ (container.parentElement);
-  const { baseMap, satellite, extent, bounds } = page;
+  const { extent, bounds } = page;
   const view = createMap(container, {
-    baseMap,
-    satellite,
-    under: rememberedUnder(page),
+    ...optionsOf(page),
     describe: t("Map"),
-    bounds: bounds ?? extent,
+    bounds,
     extent: bounds && extent ? boxAround(cornersOf(bounds, extent)) : extent,
   });
   const { map, opensAtPlace } = view;
-  const fitting = createFitting(view, store, extent);
+  const fitting = createFitting(view, store);
   const layers = createLayers(view, frame, store, actions, page);
   const controls = mountControls(view, page, {
     fit: () => fitting.fit(),
@@ -159,8 +158,8 @@ function positionsOfMission({ plan, selection }) {
   return flown.length ? places : [...places, ...selection.uavs.map((uav) => uav.position)];
 }
 
-/** @param {MapView} view @param {MissionStore} store @param {Box | null} extent */
-function createFitting({ map, fit }, store, extent) {
+/** @param {MapView} view @param {MissionStore} store */
+function createFitting({ map, fit, home }, store) {
   let wasFitted = false;
   return {
     wasFitted: () => wasFitted,
@@ -169,8 +168,10 @@ function createFitting({ map, fit }, store, extent) {
       wasFitted = true;
       map.resize(); // the dock may just have appeared: fit into the remaining space
       const positions = positionsOfMission(store.state);
-      const ground = /** @type {Box | null} */ (store.state.ground?.extent ?? extent);
-      const bases = store.state.mission ? null : baseView(store.state.fleet);
+      const region = home();
+      const ground = /** @type {Box | null} */ (region ?? store.state.ground?.extent ?? null);
+      const around = store.state.mission ? null : baseView(store.state.fleet);
+      const bases = around && (!region || isAround(region, around)) ? around : null; // those of several regions are no place
       fit(positions.length > 1 ? boxAround(positions) : (bases ?? ground ?? boxAround(positions)), how);
     },
   };

@@ -10,7 +10,7 @@ import { createTip } from "../../map/furniture.js";
 import * as fenceLayer from "../../map/layers/fences.js";
 import { createRallyPoints } from "../../map/layers/lost_link.js";
 import * as routesLayer from "../../map/layers/routes.js";
-import { rememberedUnder } from "../../map/look/under.js";
+import { optionsOf } from "../../map/look/under.js";
 import { boxAround, createMap } from "../../map/map_view.js";
 import { showTipsOnly } from "../../map/tips_only.js";
 import { t, tn } from "../../text.js";
@@ -146,12 +146,9 @@ class MonitorMap {
     const container = byId("map");
     this.#frame = /** @type {HTMLElement} */ (container.parentElement);
     this.#view = createMap(container, {
-      baseMap: page.baseMap,
-      satellite: page.satellite,
-      under: rememberedUnder(page),
+      ...optionsOf(page),
       describe: t("Map"),
-      bounds: page.bounds ?? page.extent,
-      extent: page.extent,
+      bounds: page.bounds,
     });
     const { map } = this.#view;
     const tip = createTip(this.#frame);
@@ -166,7 +163,7 @@ class MonitorMap {
     map.on("dragstart", () => store.update({ isFollowing: false }));
     showTipsOnly(map, { controls: this.#controls, tip });
     this.ready = this.#view.ready.then(() => this.#start());
-    this.opensAtPlace = this.#view.opensAtPlace;
+    this.opensAtPlace = this.#view.opensAtPlace && !this.#view.opensAtLastView; // UAVs in flight come before the last view
     this.bindings = this.#controls.bindings;
   }
 
@@ -184,7 +181,7 @@ class MonitorMap {
     this.#view.map.resize();
     const places = placesToFit(this.#store.state);
     const box = boxAround(places);
-    this.#view.fit(places.length > 1 ? box : (this.#page.extent ?? box), how);
+    this.#view.fit(places.length > 1 ? box : (this.#view.home() ?? box), how);
   }
 
   /** Bring a UAV into view, near enough to see its manoeuvres. @param {number | null} id */

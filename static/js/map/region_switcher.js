@@ -1,0 +1,132 @@
+/** The choice of the region in the bar; curators rename regions and remove the demo there. */
+
+import { ApiError, patch, post } from "../api.js";
+import { byId, find, h, icon } from "../dom.js";
+import { regionAt } from "../domain/regions.js";
+import { closeMenu, toggleMenu } from "../page/chrome.js";
+import { confirmAct } from "../page/confirm.js";
+import { toast } from "../page/toast.js";
+import { t } from "../text.js";
+import { countsText } from "./look/region_words.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { Box, MapLibreMap, MapPage, Position, Region } from "./types.d.ts" */
+
+/**
+ * @param {MapLibreMap} map
+ * @param {MapPage} page
+ * @param {(box: Box) => void} show
+ */
+export function mountRegionSwitcher(map, page, show) {
+  const regions = page.regions ?? [];
+  const button = document.getElementById("open-regions");
+  if (!button || !regions.length) return;
+  const here = () => regionAt(regions, /** @type {Position} */ (map.getCenter().toArray()));
+  function label() {
+    const words = here()?.name ?? t("All regions");
+    find(byId("open-regions"), "span").textContent = words;
+    byId("open-regions").setAttribute("aria-label", t("Region: {name}", { name: words }));
+    byId("open-regions").title = t("Region: {name}", { name: words });
+  }
+  button.hidden = false;
+  button.addEventListener("click", () =>
+    toggleMenu(button, () => menu(regions, here(), page.canCurate ?? false, show)),
+  );
+  map.on("moveend", label);
+  label();
+}
+
+/**
+ * @param {Region[]} regions
+ * @param {Region | null} here
+ * @param {boolean} canCurate
+ * @param {(box: Box) => void} show
+ */
+function menu(regions, here, canCurate, show) {
+  /** @param {Box} box */
+  const go = (box) => () => {
+    closeMenu();
+    show(box);
+  };
+  /** @param {string} name @param {string} label @param {() => unknown} act */
+  const entry = (name, label, act) => h("button", { type: "button", onclick: act }, icon(name), label);
+  const acts = canCurate
+    ? [
+        ...(here ? [entry("pencil", t("Rename {name}", { name: here.name }), () => rename(here))] : []),
+        ...regions
+          .filter((region) => region.is_synthetic)
+          .map((region) => entry("trash-2", t("Remove the demo data"), () => removeDemo(region))),
+      ]
+    : [];
+  return h(
+    "div",
+    { class: "menu float region-menu", role: "group", "aria-label": t("Regions") },
+    regions.map((region) =>
+      h(
+        "button",
+        { type: "button", "aria-current": region === here ? "true" : null, onclick: go(region.extent) },
+        icon("map"),
+        h(
+          "span",
+          { title: region.name },
+          h("strong", {}, region.name),
+          h("span", { class: "caption" }, countsText(region.counts)),
+        ),
+      ),
+    ),
+    regions.length > 1 && entry("maximize-2", t("All regions"), go(around(regions))),
+    acts.length > 0 && h("hr", {}),
+    acts,
+  );
+}
+
+/** @param {Region[]} regions @returns {Box} */
+const around = (regions) => [
+  Math.min(...regions.map(({ extent }) => extent[0])),
+  Math.min(...regions.map(({ extent }) => extent[1])),
+  Math.max(...regions.map(({ extent }) => extent[2])),
+  Math.max(...regions.map(({ extent }) => extent[3])),
+];
+
+/** @param {Region} region */
+async function rename({ id, name }) {
+  closeMenu();
+  const field = { name: "name", label: t("Name"), value: name, isNeeded: true };
+  const answer = await confirmAct({ title: t("Rename the region"), lines: [], act: t("Rename"), field });
+  if (answer?.name?.trim()) await change(() => patch(`/regions/${id}`, { name: answer.name.trim() }));
+}
+
+/** @param {Region} region */
+async function removeDemo({ id, name }) {
+  closeMenu();
+  await change(async () => {
+    const body = { region_id: id };
+    const { data } = /** @type {Answer<{ counts: Record<string, number> }>} */ (
+      await post("/regions/delete", { ...body, dry_run: true })
+    );
+    const answer = await confirmAct({
+      title: t("Remove the demo data?"),
+      lines: [
+        t("Removes {counts} of {name}, and the demo's UAVs, types and bases that no mission uses.", {
+          counts: countsText(data.counts),
+          name,
+        }),
+        t("Missions stay. This cannot be undone here: importing the demo's files again brings the data back."),
+      ],
+      act: t("Remove the demo data"),
+    });
+    if (!answer) return false;
+    await post("/regions/delete", body);
+    return true;
+  });
+}
+
+/** Carries out a change of the regions, then loads the page again. @param {() => Promise<unknown>} act */
+async function change(act) {
+  try {
+    if ((await act()) !== false) location.reload();
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
+  }
+}

@@ -1,0 +1,198 @@
+"""Each import makes a region or joins one, and every page with a map opens in the region where its user works."""
+
+import json
+import re
+from typing import Any
+
+import pytest
+from django.contrib.gis.geos import MultiPolygon, Point
+from django.test import Client
+
+from inspection.models import Asset, DataImport, NoFlyZone, Region, TerrainTile, ZoneSet
+from inspection.selectors.ground import regions_in_use
+from inspection.services.ground import mark_ground_changed
+from inspection.services.imports.regions import join_region, name_of_file
+from missions.models import Base, Uav
+from missions.services.fleet.demo_uavs import create_demo_uavs
+from tests.accounts.users import a_user, client_of
+from tests.inspection.ground import square, tower, zone
+from workspace.models import AuditEntry, Role
+
+pytestmark = pytest.mark.django_db
+
+JURA, OHIO, WAIKATO = (7.3, 47.2), (-83.0, 40.0), (175.3, -37.8)
+PAGES = ("/missions/new", "/live", "/assets", "/assets/data-issues", "/imports", "/terrain", "/zones", "/uavs")
+
+
+def an_import(file_name: str, centre: tuple[float, float], *, kind: str = "osm", half_deg: float = 0.2, **facts: Any) -> DataImport:
+    """Import two towers at the corners of a box."""
+    data_import = DataImport.objects.create(kind=kind, file_name=file_name, sha256=file_name, **facts)
+    for sign in (-1, 1):
+        tower((centre[0] + sign * half_deg, centre[1] + sign * half_deg), data_import=data_import)
+    mark_ground_changed()
+    join_region(data_import)
+    return data_import
+
+
+def three_continents() -> None:
+    an_import("jura-latest.osm.pbf", JURA, attribution="OpenStreetMap")
+    an_import("ohio.osm.pbf", OHIO)
+    an_import("waikato.osm.pbf", WAIKATO)
+
+
+def page_of(client: Client, address: str) -> dict[str, Any]:
+    found = re.search(r'<script id="page" type="application/json">(.*?)</script>', client.get(address).content.decode())
+    assert found is not None, address
+    return json.loads(found[1])  # type: ignore[no-any-return]
+
+
+def put_view(client: Client, place: tuple[float, float], zoom: float = 11.5) -> int:
+    body = {"zoom": zoom, "longitude": place[0], "latitude": place[1]}
+    return client.put("/api/v1/account/map-view", body, content_type="application/json").status_code
+
+
+def holds(box: Any, place: tuple[float, float]) -> bool:
+    return bool(box[0] <= place[0] <= box[2] and box[1] <= place[1] <= box[3])
+
+
+def test_every_page_opens_where_its_user_worked_last_on_three_continents() -> None:
+    three_continents()
+    user, other = a_user(Role.ADMINISTRATOR), a_user(Role.OPERATOR)
+    client, other_client = client_of(user), client_of(other)
+    for place in (OHIO, JURA, WAIKATO):
+        assert put_view(client, place) == 204
+        assert put_view(other_client, OHIO) == 204
+        for address in PAGES:
+            page = page_of(client, address)
+            assert holds(page["extent"], place), address
+            assert page["view"] == {"zoom": 11.5, "longitude": place[0], "latitude": place[1]}
+            assert [region["name"] for region in page["regions"]] == ["Jura", "Ohio", "Waikato"]
+            assert holds(page_of(other_client, address)["extent"], OHIO), address
+
+
+def test_a_new_user_opens_on_the_bases_and_without_any_on_the_newest_import() -> None:
+    three_continents()
+    user = a_user(Role.OPERATOR)
+    client = client_of(user)
+    assert page_of(client, "/assets")["view"] is None
+    assert holds(page_of(client, "/assets")["extent"], WAIKATO)
+    Base.objects.create(organisation=user.organisation, name="Delémont", location=Point(JURA, srid=4326))
+    assert holds(page_of(client, "/assets")["extent"], JURA)
+
+
+def test_a_view_outside_all_regions_is_kept() -> None:
+    three_continents()
+    client = client_of(a_user(Role.OPERATOR))
+    put_view(client, (0.0, 0.0), zoom=2)
+    page = page_of(client, "/assets")
+    assert page["view"]["zoom"] == 2
+    assert holds(page["extent"], WAIKATO)
+
+
+@pytest.mark.parametrize("body", [{}, {"zoom": 3, "longitude": 200, "latitude": 0}, {"zoom": "x", "longitude": 0, "latitude": 0}])
+def test_a_view_that_is_none_is_refused(body: dict[str, Any]) -> None:
+    client = client_of(a_user(Role.VIEWER))
+    assert client.put("/api/v1/account/map-view", body, content_type="application/json").status_code == 400
+
+
+def test_a_later_file_of_the_same_place_joins_and_a_neighbour_does_not() -> None:
+    first = an_import("jura.osm.pbf", JURA)
+    assert an_import("jura-poles.csv", (JURA[0] + 0.1, JURA[1]), kind="assets").region_id == first.region_id
+    neighbour = an_import("basel.osm.pbf", (JURA[0] + 0.49, JURA[1]))
+    assert neighbour.region_id != first.region_id
+    west, _, east, _ = Region.objects.get(pk=first.region_id).extent.extent
+    assert (round(west, 2), round(east, 2)) == (7.1, 7.6)
+
+
+def test_zones_and_terrain_join_without_making_the_region_larger() -> None:
+    region = an_import("jura.osm.pbf", JURA).region
+    assert region is not None
+    before = region.extent.extent
+    data_import = DataImport.objects.create(kind="zones", file_name="switzerland.json", sha256="z")
+    zone_set = ZoneSet.objects.create(name="Switzerland", data_import=data_import)
+    NoFlyZone.objects.create(zone_set=zone_set, identifier="Z1", name="All", geometry=MultiPolygon(square((8.0, 47.0), 2.0), srid=4326))
+    assert join_region(data_import) == region
+    assert Region.objects.get().extent.extent == before
+
+
+def test_a_region_of_zones_takes_the_name_of_the_first_assets() -> None:
+    data_import = DataImport.objects.create(kind="zones", file_name="zones_ch.json", sha256="z")
+    zone_set = ZoneSet.objects.create(name="zones_ch", data_import=data_import)
+    NoFlyZone.objects.create(zone_set=zone_set, identifier="Z1", name="All", geometry=MultiPolygon(square((8.0, 47.0), 2.0), srid=4326))
+    assert join_region(data_import).name == "Zones Ch"  # type: ignore[union-attr]
+    an_import("jura.osm.pbf", JURA)
+    assert [row.name for row in Region.objects.all()] == ["Jura"]
+
+
+def test_a_region_states_its_assets_and_sources() -> None:
+    three_continents()
+    tower(JURA)  # drawn by hand: of no region
+    rows = client_of(a_user(Role.VIEWER)).get("/api/v1/regions").json()["results"]
+    assert [(row["name"], row["counts"], row["attribution"]) for row in rows] == [
+        ("Jura", {"tower": 2}, ["OpenStreetMap"]),
+        ("Ohio", {"tower": 2}, []),
+        ("Waikato", {"tower": 2}, []),
+    ]
+
+
+def test_a_region_without_data_is_not_listed() -> None:
+    an_import("ohio.osm.pbf", OHIO)
+    Asset.objects.update(vanished_at="2026-01-01T00:00:00Z")
+    assert regions_in_use() == []
+
+
+@pytest.mark.parametrize(
+    ("file_name", "name"),
+    [
+        ("rhone-alpes-latest.osm.pbf", "Rhone Alpes"),
+        ("liechtenstein-2021-01-01.osm.pbf", "Liechtenstein"),
+        ("Masten_Nord.geojson", "Masten Nord"),
+        ("overpass.json", ""),
+    ],
+)
+def test_a_region_is_named_after_its_file(file_name: str, name: str) -> None:
+    assert name_of_file(file_name) == name
+
+
+def test_a_region_without_a_telling_file_is_named_by_its_place_and_twins_are_numbered() -> None:
+    assert an_import("overpass.json", WAIKATO).region.name == "37.8° S, 175.3° E"  # type: ignore[union-attr]
+    an_import("map.osm", JURA)
+    assert an_import("map.osm", OHIO).region.name == "Map 2"  # type: ignore[union-attr]
+
+
+def test_a_curator_renames_a_region() -> None:
+    three_continents()
+    region = Region.objects.get(name="Ohio")
+
+    def rename(role: Role, name: str) -> int:
+        return client_of(a_user(role)).patch(f"/api/v1/regions/{region.pk}", {"name": name}, content_type="application/json").status_code
+
+    assert (rename(Role.OPERATOR, "Columbus"), rename(Role.CURATOR, "Jura"), rename(Role.CURATOR, "Columbus")) == (403, 409, 204)
+    assert [row.name for row in Region.objects.all()] == ["Columbus", "Jura", "Waikato"]
+    assert AuditEntry.objects.get(action="renamed").before == {"name": "Ohio"}
+
+
+def test_the_demo_goes_with_its_zones_terrain_and_uavs_and_nothing_else() -> None:
+    user = a_user(Role.ADMINISTRATOR)
+    an_import("ohio.osm.pbf", OHIO)
+    region = an_import("demo.osm.pbf", JURA, is_synthetic=True).region
+    assert region is not None
+    assert region.name == "Elme Valley"
+    zones = DataImport.objects.create(kind="zones", file_name="demo.json", sha256="z", is_synthetic=True)
+    zone(JURA, zone_set=ZoneSet.objects.create(name="demo", data_import=zones))
+    terrain = DataImport.objects.create(kind="terrain", file_name="demo.tif", sha256="t", is_synthetic=True)
+    TerrainTile.objects.create(
+        data_import=terrain, extent=square(JURA, 0.2), west_deg=JURA[0], north_deg=JURA[1], step_lon_deg=1, step_lat_deg=1, columns=1,
+        rows=1, heights_amsl_m=b"",
+    )  # fmt: skip
+    assert [join_region(zones), join_region(terrain)] == [region, region]
+    create_demo_uavs(organisation=user.organisation)
+    client = client_of(user)
+    body = {"region_id": region.pk}
+    counts = {"counts": {"tower": 2, "zone": 1, "terrain": 1}}
+    assert client.post("/api/v1/regions/delete", body | {"dry_run": True}, content_type="application/json").json() == counts
+    assert Uav.objects.exists()
+    assert client.post("/api/v1/regions/delete", body, content_type="application/json").json() == counts
+    assert [row.name for row in regions_in_use()] == ["Ohio"]
+    assert not any(model.objects.exists() for model in (NoFlyZone, TerrainTile, Uav, Base))
+    assert client.post("/api/v1/regions/delete", {"region_id": 999}, content_type="application/json").status_code == 404
