@@ -21,7 +21,7 @@ export const PICKABLE = [
 /** What the layers menu switches, and the layers behind it. */
 export const GROUPS = [
   { key: "lines", layers: ["lines-casing", "lines", "lines-unknown", "line-labels"] },
-  { key: "towers", layers: ["towers", "towers-high", "towers-ring", "tower-labels"] },
+  { key: "towers", layers: ["towers", "towers-high", "towers-ring", "tower-labels", "count-discs", "count-numbers"] },
   { key: "railways", layers: ["railways", "railways-ties"] },
   { key: "bridges", layers: ["bridges-fill", "bridges", "bridge-points"] },
   {
