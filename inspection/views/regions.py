@@ -77,7 +77,7 @@ class RegionNameSerializer(serializers.Serializer):
 
 class RegionList(APIView):
     @extend_schema(operation_id="list_regions", summary="The regions with map data, by name", responses=RegionListSerializer)
-    def get(self, _request: SignedInRequest) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         return Response({"results": [region_json(row) for row in regions_in_use()]})
 
 
