@@ -44,7 +44,7 @@ pytestmark = pytest.mark.django_db
 
 # The ground is everybody's, and so are vehicles that belong to nobody yet. The others name no row of their own.
 SHARED = {
-    "asset_id", "issue_id", "entry_id", "proposal_id", "import_id", "upload_id", "set_id", "subscription_id", "zone_id",
+    "asset_id", "issue_id", "entry_id", "proposal_id", "import_id", "upload_id", "set_id", "subscription_id", "zone_id", "region_id",
     "vehicle_id of unknown-vehicles",
 }  # fmt: skip
 PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte"}
