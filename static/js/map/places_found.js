@@ -6,7 +6,7 @@ import { coordinateText } from "../units.js";
 import { positionIn } from "./coordinates_read.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { ZoneCollection } from "../api_types.d.ts" */
+/** @import { BasePage, ZoneCollection } from "../api_types.d.ts" */
 /** @import { Box, FoundPlace, MapLibreMap } from "./types.d.ts" */
 
 /** @typedef {{ name: string, position: number[], icon: string, detail: string }} NamedThing */
@@ -74,6 +74,27 @@ async function zonesFound(text, signal) {
   }));
 }
 
+/** @type {Promise<NamedThing[]> | null} */
+let bases = null;
+
+/** The organisation's bases, read with the first search; none where they cannot be read. */
+function basesKnown() {
+  bases ??= get("/bases?limit=1000").then(
+    (answer) =>
+      /** @type {Answer<BasePage>} */ (answer).data.results.map(({ name, position }) => ({
+        name,
+        position,
+        icon: "warehouse",
+        detail: t("Base"),
+      })),
+    () => {
+      bases = null; // asked again with the next search
+      return [];
+    },
+  );
+  return bases;
+}
+
 /** @param {readonly unknown[]} coordinates @returns {Box} */
 function boxOf(coordinates) {
   /** @type {Box} */
@@ -97,7 +118,8 @@ function boxOf(coordinates) {
 export async function placesFound(text, { signal, things = [] } = {}) {
   const coordinates = coordinatesFound(text);
   if (coordinates.length || !text.trim()) return coordinates;
-  return [...namedFound(text, things), ...(await zonesFound(text.trim(), signal))];
+  const [bases, zones] = await Promise.all([basesKnown(), zonesFound(text.trim(), signal)]);
+  return [...namedFound(text, things), ...namedFound(text, bases), ...zones];
 }
 
 /**

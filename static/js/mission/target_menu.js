@@ -13,16 +13,21 @@ import { MAX_HOLD_S, sensorsKnown, taskOf, wishesOf } from "./selection.js";
 /** @typedef {Pick<MissionPageState, "selection" | "fleet"> & { orders: FlownOrder[] }} Known what the menu is made from */
 /** @typedef {{ icon: string, words: string, act: () => unknown }} MenuItem */
 
-/** @type {{ kind: Task["kind"], icon: string, words: () => string }[]} */
+/** @type {{ kind: Task["kind"], icon: string, words: () => string, word: () => string }[]} the word is for a chip */
 export const TASKS = [
-  { kind: "look", icon: "eye", words: () => t("Fly-by") },
-  { kind: "photo", icon: "camera", words: () => t("Take photos") },
-  { kind: "hold", icon: "timer", words: () => t("Hover") },
+  { kind: "look", icon: "eye", words: () => t("Fly-by"), word: () => t("Fly-by") },
+  { kind: "photo", icon: "camera", words: () => t("Take photos"), word: () => t("Photos") },
+  { kind: "hold", icon: "timer", words: () => t("Hover"), word: () => t("Hover") },
 ];
 
 /** @param {Pick<Task, "kind">} task */
 export function taskIcon(task) {
   return (TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0]).icon;
+}
+
+/** "Photos" @param {Pick<Task, "kind">} task */
+export function taskWord({ kind }) {
+  return (TASKS.find((task) => task.kind === kind) ?? TASKS[0]).word();
 }
 
 /** "Take photos, 10 s" @param {Task} task */

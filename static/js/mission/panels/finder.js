@@ -3,6 +3,7 @@
 import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { placesFound } from "../../map/places_found.js";
+import { toldApart } from "../../map/told_apart.js";
 import { t, tn } from "../../text.js";
 import { detailOf, MAX_TARGETS } from "../selection.js";
 
@@ -22,7 +23,7 @@ import { detailOf, MAX_TARGETS } from "../selection.js";
  * @property {(place: FoundPlace) => void} goTo
  * @property {() => NonNullable<NonNullable<Parameters<typeof placesFound>[1]>["things"]>} things
  */
-/** @typedef {{ words: string, detail: string, icon: string, end: string, act: () => void }} Result */
+/** @typedef {{ words: string, detail: string, icon: string, end: string, centre?: number[], act: () => void }} Result */
 
 const WAIT_MS = 180;
 const MAX_RESULTS = 12;
@@ -199,7 +200,7 @@ class Finder {
       const flyable = canPlan ? await countFlyable(asked, data, signal) : 0;
       const results = [
         ...places.map((place) => this.#placeResult(place)),
-        ...data.features.map((feature) => this.#assetResult(feature)),
+        ...toldApart(data.features.map((feature) => this.#assetResult(feature))),
       ];
       this.#isBehind = false;
       this.#draw(results, results.length ? headOf(asked, data.total ?? 0) : this.#emptyWords(text), flyable);
@@ -284,6 +285,7 @@ class Finder {
       icon: kind,
       words: label,
       detail: detailOf(kind, feature.properties),
+      centre: feature.properties.centre,
       end: canPlan ? t("Add") : t("Show"),
       act() {
         show(feature);

@@ -5,7 +5,7 @@ import { routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
 import { lockOf } from "../../locks.js";
 import { isUsualTask, nameOf, taskOf } from "../../selection.js";
-import { priorityOf, taskIcon, taskText, whoMayFly } from "../../target_menu.js";
+import { priorityOf, taskIcon, taskText, taskWord, whoMayFly } from "../../target_menu.js";
 
 /** @import { MissionSelection, PickedTarget } from "../../types.d.ts" */
 
@@ -54,7 +54,7 @@ export function targetRow(target, { canPlan, light, press, pressKey, toggle, cho
     canPlan &&
       h("button", {
         type: "button",
-        class: "icon-button tight task",
+        class: "task-chip task",
         "aria-haspopup": "true",
         "aria-expanded": "false",
         onclick: (event) => openTask(/** @type {HTMLElement} */ (event.currentTarget)),
@@ -145,7 +145,7 @@ function refreshTask(button, target) {
   const words = taskText(task);
   const title = t("{task}. Change task, priority, UAV", { task: words });
   if (button.title === title) return;
-  button.replaceChildren(icon(taskIcon(task), "small"));
+  button.replaceChildren(icon(taskIcon(task), "small"), h("span", { class: "task-word" }, taskWord(task)));
   button.title = title;
   button.setAttribute("aria-label", t("Task, priority, UAV of {name}: {task}", { name: target.label, task: words }));
   button.classList.toggle("own", !isUsualTask(target));
