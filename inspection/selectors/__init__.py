@@ -15,7 +15,7 @@ from inspection.selectors.graph import NoGraph, current_graph, graph_of_version,
 from inspection.selectors.ground import GroundSummary, ground_dataset_version, ground_extent, ground_revision, ground_summary
 from inspection.selectors.terrain import ground_heights_m, has_terrain, terrain_dataset_version
 from inspection.selectors.tiles import RECIPE as TILE_RECIPE
-from inspection.selectors.tiles import NoSuchTile, map_data, tile_edition, tile_of_version, vector_tile
+from inspection.selectors.tiles import NoSuchTile, map_data, tile_of_version, tiles_version, vector_tile
 
 __all__ = [
     "TILE_RECIPE",
@@ -40,8 +40,8 @@ __all__ = [
     "map_data",
     "references_of",
     "terrain_dataset_version",
-    "tile_edition",
     "tile_of_version",
+    "tiles_version",
     "vector_tile",
     "voltage_text",
     "with_external_id",

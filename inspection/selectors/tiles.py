@@ -51,15 +51,15 @@ ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoo
 SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
 
 
-def tile_edition(version: DatasetVersion | None = None) -> str:
+def tiles_version(version: DatasetVersion | None = None) -> str:
     """Return a text that differs after each change of the map data and for each language: the pages' maps have it in tiles' addresses."""
     revision, changed_at = version or ground_dataset_version()
     return f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{RECIPE}-{get_language()}"
 
 
 def map_data() -> dict[str, Any]:
-    """Return what a page with a map needs of the map data: their extent, and the edition of the tiles."""
-    return {"extent": ground_extent(), "tiles": tile_edition()}
+    """Return what a page with a map needs of the map data: their extent, and the version of the tiles."""
+    return {"extent": ground_extent(), "tiles": tiles_version()}
 
 
 def tile_of_version(zoom: int, column: int, row: int, dataset_version: str | None) -> bytes:

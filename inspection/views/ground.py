@@ -148,14 +148,14 @@ class Tile(APIView):
             OpenApiParameter(
                 "of",
                 str,
-                description="edition of a page; browsers keep a tile of the present one for ten minutes",
+                description="The version of the map data that a page was made with; browsers keep a tile of the present one for ten minutes",
             )
         ],
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
     )
     def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:
         version = selectors.ground_dataset_version()
-        dataset_version, changed_at = selectors.tile_edition(version), version[1]
+        dataset_version, changed_at = selectors.tiles_version(version), version[1]
         etag = f'"{dataset_version}"'
         not_changed = get_conditional_response(request._request, etag=etag)
         if not_changed is not None:
@@ -167,7 +167,7 @@ class Tile(APIView):
             except NoSuchTile as error:
                 raise Http404 from error
         response["ETag"] = etag
-        is_of_edition = changed_at is not None and request.query_params.get("of") == dataset_version
+        is_of_version = changed_at is not None and request.query_params.get("of") == dataset_version
         # A page that is open does not learn of a new zone here: it asks again after that time.
-        response["Cache-Control"] = f"private, max-age={EDITION_KEPT_S}" if is_of_edition else "private, no-cache"
+        response["Cache-Control"] = f"private, max-age={EDITION_KEPT_S}" if is_of_version else "private, no-cache"
         return response

@@ -10,7 +10,7 @@ from django.test import Client
 from django.utils import timezone, translation
 
 from inspection.models import Asset, DataImport, Ground, NoFlyZone
-from inspection.selectors import asset_detail, asset_label, tile_edition, tile_of_version, vector_tile
+from inspection.selectors import asset_detail, asset_label, tile_of_version, tiles_version, vector_tile
 from inspection.services import mark_ground_changed
 from inspection.services.imports.regions import join_region
 from tests.accounts.users import a_user, client_of
@@ -267,26 +267,26 @@ def test_a_tile_is_kept_until_the_ground_changes() -> None:
     assert get(client, address, **{"If-None-Match": first["ETag"]}).status_code == 200
 
 
-def edition_in_english() -> str:
+def version_in_english() -> str:
     with translation.override("en"):
-        return tile_edition()
+        return tiles_version()
 
 
 def test_a_tile_of_the_present_edition_is_kept_for_minutes_and_of_another_one_revalidated() -> None:
     client = client_of(a_user())
     mark_ground_changed()
-    edition = edition_in_english()
-    assert get(client, f"0/0/0?of={edition}")["Cache-Control"] == "private, max-age=600"
+    version = version_in_english()
+    assert get(client, f"0/0/0?of={version}")["Cache-Control"] == "private, max-age=600"
     mark_ground_changed()
-    assert edition_in_english() != edition
-    assert get(client, f"0/0/0?of={edition}")["Cache-Control"] == "private, no-cache"
+    assert version_in_english() != version
+    assert get(client, f"0/0/0?of={version}")["Cache-Control"] == "private, no-cache"
     assert get(client, "0/0/0?of=3")["Cache-Control"] == "private, no-cache"
 
 
 def test_a_page_with_a_map_names_the_edition_of_its_tiles() -> None:
     client = client_of(a_user())
     mark_ground_changed()
-    assert f'<meta name="tiles" content="{edition_in_english()}">' in client.get("/missions/new").content.decode()
+    assert f'<meta name="tiles" content="{version_in_english()}">' in client.get("/missions/new").content.decode()
 
 
 def test_a_tile_of_another_database_with_as_many_changes_is_not_taken_for_this_ones() -> None:
