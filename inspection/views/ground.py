@@ -148,7 +148,7 @@ class Tile(APIView):
             OpenApiParameter(
                 "of",
                 str,
-                description="The version of the map data that a page was made with; browsers keep a tile of the present one for ten minutes",
+                description="The version of the map data that a page shows; browsers keep a tile of the present one for ten minutes",
             )
         ],
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
