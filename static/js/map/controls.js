@@ -241,7 +241,7 @@ function mountPlaceMenu(map, frame, measure, act) {
       return menu;
     });
   });
-  map.on("movestart", closeMenu);
+  map.on("movestart", ({ originalEvent }) => originalEvent && closeMenu()); // not when it is fitted to a new plan
 }
 
 /**

@@ -37,7 +37,7 @@ export function createMap(container, opening) {
   /** @param {{ zoom: number, centre: Position } | null} view */
   const worthwhile = (view) => {
     const size = /** @type {[number, number]} */ ([container.clientWidth, container.clientHeight]);
-    const least_px = regions.length ? 0 : undefined; // from afar a region is a dot with its name
+    const least_px = regions.length && !bounds ? 0 : undefined; // from afar a region is a dot with its name
     return view && boxes.some((box) => showsAnything(view, size, box, least_px)) ? view : null;
   };
   const addressed = () => worthwhile(viewOf(location.hash));

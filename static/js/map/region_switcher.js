@@ -23,8 +23,11 @@ export function mountRegionSwitcher(map, page, show) {
   if (!button || !regions.length) return;
   const here = () => regionAt(regions, /** @type {Position} */ (map.getCenter().toArray()));
   function label() {
-    const words = here()?.name ?? t("All regions");
-    find(byId("open-regions"), "span").textContent = words;
+    const region = here();
+    const words = region?.name ?? t("All regions");
+    const shown = find(byId("open-regions"), "span");
+    shown.textContent = words;
+    shown.translate = !region; // a name stays as it is
     byId("open-regions").setAttribute("aria-label", t("Region: {name}", { name: words }));
     byId("open-regions").title = t("Region: {name}", { name: words });
   }
@@ -69,7 +72,7 @@ function menu(regions, here, canCurate, show) {
         h(
           "span",
           { title: region.name },
-          h("strong", {}, region.name),
+          h("strong", { translate: "no" }, region.name),
           h("span", { class: "caption" }, countsText(region.counts)),
         ),
       ),

@@ -64,6 +64,7 @@ const BEGINNING = {
   groundRevision: null,
   planIsStored: false,
   savedBasis: null,
+  restoredBasis: null,
   figures: {},
   planning: null,
   saving: false,

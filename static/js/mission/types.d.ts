@@ -390,6 +390,8 @@ export interface MissionPageState {
   planIsStored: boolean;
   /** of the stored selection: see storedBasisOf */
   savedBasis: string | null;
+  /** of unsaved changes that this browser brought back */
+  restoredBasis: string | null;
   /** plans by the basis that they were made for */
   figures: Record<string, PlanResult>;
   planning: Planning | null;

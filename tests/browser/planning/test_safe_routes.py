@@ -103,8 +103,11 @@ def test_what_does_not_fit_in_one_flight_is_shown_as_several(visitor: Visitor, p
 
 def test_on_a_phone_several_warnings_take_one_line(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal", size=(390, 844), touch=True)
-    mission = planned(page, "Out of range", uavs=[{"name": "Heron", "position": region.west, "max_range_m": 2_000.0}])
-    assert len(mission["plan"]["unassigned"]) > 1
+    towers = asks(page, f"/assets?kind=tower&bbox={region.spread_towers}&limit=200")["features"]
+    picked = [{"asset": tower["id"], "sensor": "LiDAR" if number else ""} for number, tower in enumerate(towers[:: len(towers) // 3][:3])]
+    heron = {"name": "Heron", "position": region.west, "max_range_m": 2_000.0}
+    mission = planned(page, "Out of range", uavs=[heron], targets=picked)
+    assert len({item["reason"] for item in mission["plan"]["unassigned"]}) > 1
     opens(page, mission)
     fold = page.locator(".notice-fold summary")
     expect(fold).to_contain_text(re.compile(r"\d warnings"))

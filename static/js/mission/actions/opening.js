@@ -56,6 +56,7 @@ export function createOpening(context, { conflictWith }) {
     const { stored } = store.state;
     const both = decision === "behind" && draft.base && stored ? merged(draft.base, mine, stored) : null;
     const shown = both?.clashes.length === 0 ? both : mine;
+    store.update({ restoredBasis: picks.basisOf(shown.selection) });
     change(shown.selection);
     store.update({ name: shown.name });
     if (decision === "behind" && shown === mine) await conflictWith(data, draft.revision, draft.base ?? null);
