@@ -324,11 +324,11 @@ def test_each_set_of_zones_has_its_graph(line):
 
 
 def test_a_zone_above_what_is_flown_takes_nothing(line):
-    """Towers of 30 m and untagged vertices of 45 m are passed at 60 m, at most 80 m with tolerance and margin."""
+    """Towers of 30 m and untagged vertices of 45 m are passed at 60 m, at most 90 m with tolerance, twice, and margin."""
     row = services.build_graph()
     add_zone(9.0015, 46.999, 9.0025, 47.001)
     polygons = selectors.zones_in_force().polygons
-    graphs = [graph_for(row.version, ZoneIndex(polygons, [1], ["Airfield"], floor_agl_m=[floor_m])) for floor_m in (80.0, 80.5)]
+    graphs = [graph_for(row.version, ZoneIndex(polygons, [1], ["Airfield"], floor_agl_m=[floor_m])) for floor_m in (90.0, 90.5)]
     assert [(graph.node_kind == NodeKind.LINE_VERTEX).sum() for graph in graphs] == [0, 1]
 
 

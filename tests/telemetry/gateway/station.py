@@ -17,7 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message, frames_of_datagram, message_of
 from mavlink.signing import FrameWriter
-from missions.models import CredentialKind, Uav
+from missions.models import CredentialKind, Uav, UavType
 from missions.services.fleet.credentials import make_credential
 from telemetry.gateway.options import GatewayOptions, UdpAddress
 from telemetry.gateway.process import Gateway
@@ -37,11 +37,17 @@ def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = TIM
 
 
 def unsigned_uav(system: int = 1, **values: Any) -> Uav:
-    return Uav.objects.create(name=f"UAV {system}", location=Point(0, 0), mavlink_system_id=system, allows_unsigned=True, **values)
+    return _uav(system, allows_unsigned=True, **values)
+
+
+def _uav(system: int, **values: Any) -> Uav:
+    """One that can be planned: its type states that no range limits it."""
+    unlimited, _is_new = UavType.objects.get_or_create(name="Unlimited", range_unlimited=True)
+    return Uav.objects.create(name=f"UAV {system}", location=Point(0, 0), mavlink_system_id=system, **{"uav_type": unlimited} | values)
 
 
 def signed_uav(system: int, actor: User) -> tuple[Uav, bytes]:
-    uav = Uav.objects.create(name=f"UAV {system}", location=Point(0, 0), mavlink_system_id=system)
+    uav = _uav(system)
     made = make_credential(uav=uav, actor=actor, kind=CredentialKind.MAVLINK_KEY)
     return uav, bytes.fromhex(made.secret)
 

@@ -25,7 +25,7 @@ ASKED_BY_ALL = {
 }  # fmt: skip
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(users|invitations|service-accounts|sign-ins|unknown-vehicles)(/|$)")
-SET_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(demo-data|rehearsal-rule|second-factor-rule)$")  # read by everybody
+SET_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(demo-data|organisation|rehearsal-rule|second-factor-rule)$")  # read by everybody
 FOR_UAVS_ALONE = re.compile(r"/api/v1/uav-link(/|$)")
 ONES_OWN = re.compile(r"/api/v1/account(/|$)")
 

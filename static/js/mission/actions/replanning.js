@@ -64,7 +64,8 @@ export function replanSmallChanges({ store, history, page, selection }, plan) {
       planned = { selection: state.selection, result: state.plan.result };
       return;
     }
-    const isWanted = page.canPlan && planned && state.plan && !state.hand && !state.planning && !state.isAway && took_ms < QUICK_MS;
+    const isWanted =
+      page.canPlan && planned && state.plan && !state.hand && !state.planning && !state.isAway && took_ms < QUICK_MS;
     const basis = basisOf(state.selection);
     if (!isWanted || asked?.basis === basis || state.restoredBasis === basis) return; // refused or brought back: planned on request
     const isQuick = took_ms > 0 || state.selection.targets.length <= MAX_PLANNED_AT_ONCE;
