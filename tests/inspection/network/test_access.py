@@ -71,7 +71,7 @@ def test_a_leg_too_near_to_a_zone_goes_round_it():
 
 
 def test_heights_decide_what_stands_in_the_way():
-    """The nodes' towers are taken to be 45 m tall and are passed at 60 m, as a place without height is; 20 m less or 30 m more are reached."""
+    """The nodes' towers are taken to be 45 m tall and are passed at 60 m, as is a place without height; 20 m less or 30 m more are met."""
     for floor_m, is_straight in ((90.0, False), (91.0, True)):
         wall = ZoneIndex([box(9.99, 50.0004, 10.02, 50.0006)], [7], ["wall"], floor_agl_m=[floor_m])
         rules = LegRules(2_000.0, 2.0, 5.0, FlownHeights())
