@@ -72,7 +72,7 @@ export function createMap(container, opening) {
     regionsLayer.addTo(map, regions, (box) => fitTo(box, 0));
     outline.start();
   });
-  let keepsAddress = inAddress !== null;
+  let keepsAddress = opened !== null;
   map.on("moveend", () => {
     if (keepsAddress)
       history.replaceState(history.state, "", hashOf({ zoom: map.getZoom(), centre: map.getCenter().toArray() }));

@@ -80,6 +80,7 @@ def test_a_mission_is_planned_and_saved_with_the_keyboard_alone(visitor: Visitor
     page.keyboard.press("Control+A")
     page.keyboard.type("Keyboard kestrel")
     page.keyboard.press("Tab")
+    page.keyboard.press("Tab")
     expect(dialog.get_by_label("Type")).to_be_focused()
     page.keyboard.type("Unl")
     page.keyboard.press("Enter")
