@@ -71,7 +71,7 @@ def test_a_mission_is_planned_and_saved_with_the_keyboard_alone(visitor: Visitor
         expect(page.locator("#target-list .target")).to_have_count(wanted)
         page.keyboard.press("Escape")
 
-    unlimited_type(page)
+    unlimited = unlimited_type(page)
     tabs_to(page, "Add a UAV")
     page.keyboard.press("Enter")
     page.keyboard.press("Enter")  # in the middle of the map
@@ -83,6 +83,9 @@ def test_a_mission_is_planned_and_saved_with_the_keyboard_alone(visitor: Visitor
     page.keyboard.press("Tab")
     expect(dialog.get_by_label("Type")).to_be_focused()
     page.keyboard.type("Unl")
+    expect(dialog.get_by_label("Type")).to_have_value(f"{unlimited}")
+    page.keyboard.press("Shift+Tab")
+    page.keyboard.press("Shift+Tab")
     page.keyboard.press("Enter")
     expect(dialog).to_be_hidden()
     expect(page.get_by_role("checkbox", name="Keyboard kestrel")).to_be_checked()
