@@ -138,7 +138,7 @@ def airspace_on(
 
 
 @dataclass(frozen=True)
-class MetZone:
+class NamedZone:
     """A zone with its name as stated, or what stands for one; then there is no id."""
 
     name: str | Reason
@@ -150,7 +150,7 @@ class MetZone:
         return {"zone": self.name} if self.id is None else {"zone": self.name, "zone_id": self.id}
 
 
-def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> MetZone | None:
+def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> NamedZone | None:
     """Return the zone that holds the position between this height above ground and that of the flight to it.
 
     A place nearer to a zone than the clearance counts as inside it.
@@ -162,10 +162,10 @@ def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> MetZone
     if not zones.contains([position], clearance_m, low_m, high_m)[0]:
         return None
     found = zones.zone_at(position, low_m, high_m)
-    return met_zone(*found) if found else _margin(airspace)
+    return named_zone(*found) if found else _margin(airspace)
 
 
-def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> MetZone | None:
+def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> NamedZone | None:
     """Return the first zone that a stretch meets at the heights of its inspection and of the flight to it."""
     line = np.array(course)
     low_m, high_m = column_m(agl_m, airspace)
@@ -175,17 +175,17 @@ def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> Me
     for leg in met.tolist():
         found = airspace.zones.first_met(course[leg], course[leg + 1], low_m, high_m)
         if found is not None:
-            return met_zone(*found)
+            return named_zone(*found)
     return _margin(airspace)
 
 
-def met_zone(key: int, name: str) -> MetZone:
+def named_zone(key: int, name: str) -> NamedZone:
     """Return a zone as an index describes it."""
-    return MetZone(Reason("obstacle_margin")) if name == WALL else MetZone(name, key)
+    return NamedZone(Reason("obstacle_margin")) if name == WALL else NamedZone(name, key)
 
 
-def _margin(airspace: Airspace) -> MetZone:
-    return MetZone(Reason("zone_margin", {"margin_m": airspace.access.zone_clearance_m}))
+def _margin(airspace: Airspace) -> NamedZone:
+    return NamedZone(Reason("zone_margin", {"margin_m": airspace.access.zone_clearance_m}))
 
 
 def column_m(agl_m: float, airspace: Airspace) -> tuple[float, float]:

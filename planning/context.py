@@ -16,7 +16,7 @@ from planning.clearance.zone_clearance import Margins
 from planning.problem import Task
 from planning.rules import FlightRules, RoutingRules, SeparationRules
 from planning.separation.separation import TimedRoute
-from planning.trajectory.heights import FloatArray, Ground, GroundHeights
+from planning.trajectory.heights import FloatArray, GroundHeights, GroundModel
 
 Box = tuple[float, float, float, float]
 
@@ -82,8 +82,8 @@ class Terrain:
     around: Callable[[Box], TiledTerrain]
 
     @property
-    def ground(self) -> Ground:
-        return Ground(self.heights_m, lambda start, end: profile_under(start, end, self.around))
+    def ground(self) -> GroundModel:
+        return GroundModel(self.heights_m, lambda start, end: profile_under(start, end, self.around))
 
 
 def _no_other_flights(window_s: float) -> OtherFlights:
@@ -117,7 +117,7 @@ class PlanningContext:
     other_flights: Callable[[float], OtherFlights] = _no_other_flights
 
     @property
-    def ground(self) -> Ground | None:
+    def ground(self) -> GroundModel | None:
         """The terrain under routes; None without a model."""
         return None if self.terrain is None else self.terrain.ground
 

@@ -21,7 +21,7 @@ from missions.selectors.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance
-from planning.trajectory.heights import Ground, with_heights
+from planning.trajectory.heights import GroundModel, with_heights
 from planning.trajectory.leg_speeds import SpeedRange, speeds_out_of_range
 from planning.trajectory.obstacles import too_low
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
@@ -84,7 +84,7 @@ def _speed_fault(leg: Leg, flyer: LegFlyer | None) -> dict[str, Any] | None:
 
 
 def _faults(
-    start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, spans: Spans, ground: Ground | None
+    start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, spans: Spans, ground: GroundModel | None
 ) -> dict[str, Any] | None:
     """Return the first fault of a leg, or None; the vertical columns to the ground at its ends are not checked."""
     flight = settings.FLIGHT_RULES

@@ -21,7 +21,7 @@ from missions.selectors.resolved_targets import NamedTarget, resolved_targets, w
 from planning.airspace import Airspace, airspace_on, zone_choice
 from planning.context import OtherFlights, PlanningContext, ResolvedTarget, Terrain
 from planning.request import BaseRequest, EndAction, InvalidRequest, PlanRequest
-from planning.trajectory.heights import Ground
+from planning.trajectory.heights import GroundModel
 from workspace.models import Organisation
 
 
@@ -32,12 +32,12 @@ def read_targets(request: PlanRequest) -> tuple[PlanningGround, list[NamedTarget
     return read.ground(), targets, deleted
 
 
-def terrain_under(dataset_version: DatasetVersion) -> Ground | None:
+def terrain_under(dataset_version: DatasetVersion) -> GroundModel | None:
     """Return the terrain under routes over this dataset version; None without a terrain model."""
     heights_m = heights_at(dataset_version)
     if heights_m is None:
         return None
-    return Ground(heights_m, partial(profile_under, around=partial(tiles_around, dataset_version=dataset_version)))
+    return GroundModel(heights_m, partial(profile_under, around=partial(tiles_around, dataset_version=dataset_version)))
 
 
 def planning_context(

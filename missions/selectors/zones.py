@@ -16,8 +16,7 @@ from missions.models import Mission, Route
 from missions.selectors.planning_rules import planning_rules
 from planning.checks.zones import MetZone
 from planning.checks.zones import zones_met as checked_zones_met
-from planning.clearance.nearby_zones import zones_near
-from planning.clearance.nearest_zone import NearestZone, nearest_zone
+from planning.clearance.nearby_zones import NearestZone, nearest_zone, zones_near
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, breaches
 from planning.request import EndAction
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from operation.reasons import Reason
-from planning.airspace import Airspace, MetZone, zone_at
+from planning.airspace import Airspace, NamedZone, zone_at
 from planning.assignment.assignment import LockCost, assignment, least_ready_s, solve_assignment
 from planning.assignment.refusals import Grounding, deleted_target, groundings, refused_target, target_height_m
 from planning.assignment.routing_input import costs_of_flying, needs_flight_costs, visits_of_targets
@@ -129,7 +129,7 @@ def candidate_plan(
     return CandidatePlan(uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
 
 
-def _no_landing(request: PlanRequest, uavs: Sequence[int], targets: Sequence[ResolvedTarget], airspace: Airspace) -> dict[int, MetZone]:
+def _no_landing(request: PlanRequest, uavs: Sequence[int], targets: Sequence[ResolvedTarget], airspace: Airspace) -> dict[int, NamedZone]:
     """If a UAV is to land at its last target: targets, by their numbers, with a zone between the height of inspection and the ground."""
     if all(request.end_action(uav) is not EndAction.LAND for uav in uavs):
         return {}

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from operation.reasons import MAX_NAMED, Reason
-from planning.airspace import MetZone
+from planning.airspace import NamedZone
 from planning.assignment.assignment import Assignment
 from planning.assignment.options import has_sensor, may_do
 from planning.assignment.refusals import Grounding
@@ -31,7 +31,7 @@ def explained_unassigned(
     uavs: Sequence[int],
     asked: Assignment,
     grounded: Mapping[int, Grounding],
-    no_landing: Mapping[int, MetZone],
+    no_landing: Mapping[int, NamedZone],
     kept_from: Mapping[int, Collection[int]],
 ) -> list[UnassignedTarget]:
     """Return the solver's reasons in full. no_landing: zones in which UAVs would land at targets, by their numbers among those routed;

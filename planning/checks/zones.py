@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-import numpy as np
-
 from inspection.zones.reach import ZoneTable
 from planning.clearance.nearby_zones import zones_near
 from planning.clearance.zone_clearance import Breach, FlownRoute, Margins, breaches
@@ -30,18 +28,10 @@ def zones_met(routes: Sequence[FlownRoute], table: ZoneTable, margins: Margins) 
     if not len(table):
         return [[] for _ in routes]
     for route in routes:
-        near, facts = zones_near(table, route.position, margins, _window(route))
+        near, facts = zones_near(table, route.position, margins, route.window_s)
         met = breaches(route, facts, margins)
         found.append([MetZone(breach, int(near.ids[breach.zone]), near.names[breach.zone]) for breach in met])
     return found
-
-
-def _window(route: FlownRoute) -> tuple[float, float] | None:
-    """From take-off to the end; None where any of it is not known."""
-    if route.arrival_s is None or route.departs_s is None or route.ends_s is None or np.isnan(route.arrival_s).any():
-        return None
-    moments = [route.departs_s, route.ends_s, float(route.arrival_s.min()), float(route.arrival_s.max())]
-    return min(moments), max(moments)
 
 
 def keys_of_zones_met(routes: Sequence[PlannedRoute], departs_at: datetime | None, context: PlanningContext) -> frozenset[int]:

@@ -61,6 +61,14 @@ class FlownRoute:
     ends_s: float | None = None
     lands: bool = False
 
+    @property
+    def window_s(self) -> tuple[float, float] | None:
+        """From take-off to the end, in seconds since the epoch; None where any of it is not known."""
+        if self.arrival_s is None or self.departs_s is None or self.ends_s is None or np.isnan(self.arrival_s).any():
+            return None
+        moments = [self.departs_s, self.ends_s, float(self.arrival_s.min()), float(self.arrival_s.max())]
+        return min(moments), max(moments)
+
 
 @dataclass(frozen=True, eq=False)
 class ZoneFacts:

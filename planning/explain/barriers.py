@@ -7,7 +7,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat, distance_m
 from operation.reasons import Reason
-from planning.airspace import Airspace, MetZone, airspace_on, met_zone
+from planning.airspace import Airspace, NamedZone, airspace_on, named_zone
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.assignment.unassigned import LOCKED
 from planning.connection_points import FloatArray, Terminal, paths_between
@@ -32,7 +32,7 @@ class Barrier:
     """What bars every path; the zone, if that is one."""
 
     why: Reason
-    zone: MetZone | None = None
+    zone: NamedZone | None = None
 
 
 def barriers_of(targets: Sequence[ResolvedTarget], starts: Sequence[LonLat], airspace: Airspace) -> dict[int, Barrier]:
@@ -67,11 +67,11 @@ def _rounded(kilometres: float) -> float:
     return round(kilometres, 1 if kilometres < 100.0 else None)
 
 
-def _first_zone(line: FloatArray, airspace: Airspace) -> MetZone | None:
+def _first_zone(line: FloatArray, airspace: Airspace) -> NamedZone | None:
     """line: the shortest path that there would be without zones."""
     met = np.flatnonzero(airspace.leg_zones.meets(line[:-1], line[1:], airspace.access.zone_clearance_m))
     for leg in met.tolist():
         zone = airspace.leg_zones.first_met(LonLat(*line[leg]), LonLat(*line[leg + 1]))
         if zone is not None:
-            return met_zone(*zone)
+            return named_zone(*zone)
     return None

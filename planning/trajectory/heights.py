@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres above sea level (n,), NaN where unknown
 
 
-class Ground(NamedTuple):
+class GroundModel(NamedTuple):
     """A terrain model: heights of places (n, 2), and its profile under straight legs from places (n, 2) to places (n, 2)."""
 
     heights_m: GroundHeights
@@ -69,7 +69,7 @@ def inspection_agl_m(height_m: float, rules: FlightRules) -> float:
 
 
 def with_heights(
-    points: RoutePoints, ground: Ground | None, rules: FlightRules, floor_agl_m: FloatArray | None = None
+    points: RoutePoints, ground: GroundModel | None, rules: FlightRules, floor_agl_m: FloatArray | None = None
 ) -> tuple[Waypoints, bool]:
     """Waypoints with all three heights, and whether flat ground had to be assumed: without a terrain model, or where it has a gap.
 

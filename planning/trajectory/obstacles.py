@@ -10,7 +10,7 @@ from inspection.network.spans import Spans
 from inspection.terrain.profile import heights_over
 from planning.rules import FlightRules
 from planning.trajectory.beside_spans import legs_beside, points_beside, stretches_too_low
-from planning.trajectory.heights import Ground
+from planning.trajectory.heights import GroundModel
 from planning.trajectory.sloped_rises import ProfilePoint, with_slopes
 from planning.trajectory.waypoints import END, NONE, PASS, FloatArray, IntArray, RoutePoints, Waypoints
 
@@ -43,7 +43,7 @@ class TooLow:
         return TooLow(*(values[chosen] for values in vars(self).values()))
 
 
-def too_low(waypoints: Waypoints, spans: Spans, ground: Ground | None, rules: FlightRules) -> TooLow | None:
+def too_low(waypoints: Waypoints, spans: Spans, ground: GroundModel | None, rules: FlightRules) -> TooLow | None:
     """Where waypoints and legs come within BESIDE_M, across the ground, of something and not by the clearance over it; None for nowhere.
 
     ground is asked only where the waypoints have heights above the sea. What is inspected, and the wires at it, do not count
@@ -83,7 +83,7 @@ def too_low(waypoints: Waypoints, spans: Spans, ground: Ground | None, rules: Fl
     return TooLow(place[row][order], is_leg[row][order], begin[order], until[order], needed_m[order], agl_m[order], span[row][order])
 
 
-def rising_over(waypoints: Waypoints, spans: Spans, ground: Ground | None, rules: FlightRules) -> tuple[Waypoints, tuple[int, ...]]:
+def rising_over(waypoints: Waypoints, spans: Spans, ground: GroundModel | None, rules: FlightRules) -> tuple[Waypoints, tuple[int, ...]]:
     """The waypoints, with a climb before, a level stretch over and a descent behind whatever they would pass too low.
 
     Also the numbers of the spans over which a UAV would have to rise above the limit, or nobody knows how high: such a route is not to
@@ -100,7 +100,7 @@ def rising_over(waypoints: Waypoints, spans: Spans, ground: Ground | None, rules
     return risen, blocked
 
 
-def highest_agl_m(waypoints: Waypoints, ground: Ground) -> float:
+def highest_agl_m(waypoints: Waypoints, ground: GroundModel) -> float:
     """The greatest height over the ground anywhere on the legs; that of the waypoints where the ground is not known."""
     position, level_m = waypoints.points.position, waypoints.amsl_m
     highest_m = float(waypoints.points.agl_m.max())
@@ -127,7 +127,9 @@ def _on_leg(points: RoutePoints, place: IntArray, share: FloatArray) -> FloatArr
     return at
 
 
-def _risen(waypoints: Waypoints, low: TooLow, ground: Ground | None, max_agl_m: float, *, with_slopes_beside: bool = True) -> Waypoints:
+def _risen(
+    waypoints: Waypoints, low: TooLow, ground: GroundModel | None, max_agl_m: float, *, with_slopes_beside: bool = True
+) -> Waypoints:
     points = waypoints.points
     is_known = waypoints.amsl_m is not None
     plain_m = points.agl_m if waypoints.amsl_m is None else waypoints.amsl_m

@@ -18,7 +18,7 @@ from planning.energy.performance import Performance
 from planning.problem import End, Task, TaskKind
 from planning.rules import FlightRules, SeparationRules
 from planning.separation.separation import TimedRoute, keep_apart
-from planning.trajectory.heights import Ground, with_heights
+from planning.trajectory.heights import GroundModel, with_heights
 from planning.trajectory.obstacles import highest_agl_m, rising_over
 from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from planning.trajectory.timing import timing
@@ -55,7 +55,7 @@ def _rehearse_terrain(points: RoutePoints) -> None:
     tiles = TiledTerrain(
         np.array([1]), np.array([1]), np.array([[8.5, 47.5, 0.5, 0.5]]), np.array([[3, 3]]), lambda keys, number, wanted: grid
     )
-    ground = Ground(lambda positions: tiles.heights_at(positions).heights_m, lambda start, end: ground_profile(tiles, start, end))
+    ground = GroundModel(lambda positions: tiles.heights_at(positions).heights_m, lambda start, end: ground_profile(tiles, start, end))
     waypoints, _is_flat = with_heights(points, ground, FlightRules())
     highest_agl_m(waypoints, ground)
 

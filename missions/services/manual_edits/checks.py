@@ -26,7 +26,7 @@ from planning.connection_points import tallest_support_m
 from planning.energy.power import NoHeadway
 from planning.plan import PlannedRoute
 from planning.request import EndAction, InvalidRequest, PlanRequest
-from planning.trajectory.heights import Ground, asset_height_m, with_heights
+from planning.trajectory.heights import GroundModel, asset_height_m, with_heights
 from planning.trajectory.leg_speeds import ground_speeds, speeds_out_of_range
 from planning.trajectory.obstacles import too_low
 from planning.trajectory.route_points import line_of, with_short_legs
@@ -41,7 +41,7 @@ class ManualEditContext:
     """Map data of a check. terrain: None without a terrain model."""
 
     network: Network
-    terrain: Ground | None
+    terrain: GroundModel | None
     dataset_version: DatasetVersion
 
 

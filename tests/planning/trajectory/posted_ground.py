@@ -9,7 +9,7 @@ from scipy.interpolate import RegularGridInterpolator
 from inspection.terrain.heights import HeightGrid
 from inspection.terrain.profile import profile_under
 from inspection.terrain.tiled_terrain import TiledTerrain
-from planning.trajectory.heights import FloatArray, Ground
+from planning.trajectory.heights import FloatArray, GroundModel
 
 
 class PostedGround:
@@ -43,8 +43,8 @@ def tiled(grids: list[HeightGrid]) -> TiledTerrain:
     )  # fmt: skip
 
 
-def ground_of(tiles: TiledTerrain) -> Ground:
-    return Ground(lambda positions: tiles.heights_at(positions).heights_m, lambda start, end: profile_under(start, end, tiles.around))
+def ground_of(tiles: TiledTerrain) -> GroundModel:
+    return GroundModel(lambda positions: tiles.heights_at(positions).heights_m, lambda start, end: profile_under(start, end, tiles.around))
 
 
 def ground_like(
