@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import qrcode
 from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
@@ -11,7 +12,6 @@ from rest_framework.views import APIView
 from accounts.login import PASSWORD_NEEDED, require_reauthentication
 from missions import services
 from missions.models import CredentialKind
-from missions.qr_code import qr_rows
 from missions.selectors import fleet
 from missions.serializers.fleet import (
     CredentialInputSerializer,
@@ -104,3 +104,10 @@ def _insist_reason(request: SignedInRequest, values: dict[str, Any]) -> str:
     if reason and request.user.role not in ADMINISTRATORS:
         raise ApiProblem(403, "permission_denied", _("Only administrators replace or revoke it now."))
     return reason
+
+
+def qr_rows(text: str) -> list[str]:
+    """Return the modules of the QR code of a text, a row each: "1" is dark. The page adds the quiet zone."""
+    code = qrcode.QRCode(error_correction=qrcode.ERROR_CORRECT_M, border=0)
+    code.add_data(text)
+    return ["".join("1" if dark else "0" for dark in row) for row in code.get_matrix()]

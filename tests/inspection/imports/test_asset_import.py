@@ -14,24 +14,13 @@ from inspection.selectors import current_graph, ground_revision
 from inspection.services import AssetFileError, UnfinishedMapping, build_graph, delete_asset, import_assets, save_asset
 from inspection.services.imports.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
-from tests.accounts.users import a_user, client_of
 from tests.inspection.importers.assets.made_files import geojson, line, point
-from workspace.models import AuditEntry, Role, User
+from workspace.models import AuditEntry, User
 
 pytestmark = pytest.mark.django_db
 
 TOWERS = {"kind": "tower", "columns": {"key": "id", "ref": "ref", "height": "h"}}
 Row = tuple[dict[str, Any], dict[str, Any] | None]
-
-
-@pytest.fixture
-def curator() -> User:
-    return a_user(Role.CURATOR)
-
-
-@pytest.fixture
-def client(curator: User) -> Client:
-    return client_of(curator)
 
 
 def row(key: str, lon: float, **facts: Any) -> Row:

@@ -10,9 +10,9 @@ from inspection.services import import_zones
 from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal
-from tests.accounts.users import a_user, client_of
+from tests.accounts.users import client_of
 from tests.inspection.imports.zone_sets import zone_file
-from workspace.models import Role, User
+from workspace.models import User
 
 pytestmark = pytest.mark.django_db
 
@@ -27,11 +27,6 @@ def openair(folder: Path, *records: tuple[str, str]) -> Path:
 
 def broken(border: str) -> str:
     return border.replace("47:10:00", "47:10:77", 1)
-
-
-@pytest.fixture
-def curator() -> User:
-    return a_user(Role.CURATOR)
 
 
 def proposed(path: Path, curator: User, **parameters: Any) -> ImportProposal:

@@ -23,11 +23,6 @@ COLUMNS = {"kind": "tower", "columns": {"key": "id", "external_id": "sap"}}
 Ids = dict[str, str]
 
 
-@pytest.fixture
-def curator() -> User:
-    return a_user(Role.CURATOR)
-
-
 def bring_in(folder: Path, ids: Ids, *, actor: User | None = None, name: str = "masts", parameters: dict[str, Any] = COLUMNS) -> DataImport:
     """Towers by key, each with its id."""
     rows = [({"id": key, "sap": external_id}, point(8.0 + 0.01 * number, 47.0)) for number, (key, external_id) in enumerate(ids.items())]

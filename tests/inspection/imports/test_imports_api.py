@@ -22,16 +22,6 @@ from workspace.models import AuditEntry, Job, JobState, Role, User
 pytestmark = pytest.mark.django_db
 
 
-@pytest.fixture
-def curator() -> User:
-    return a_user(Role.CURATOR)
-
-
-@pytest.fixture
-def client(curator: User) -> Client:
-    return client_of(curator)
-
-
 def square(west: float, south: float = 47.0, side: float = 0.1) -> dict[str, Any]:
     east, north = west + side, south + side
     return {"type": "Polygon", "coordinates": [[[west, south], [east, south], [east, north], [west, north], [west, south]]]}

@@ -11,17 +11,11 @@ from inspection.services import delete_asset, import_osm, save_asset
 from inspection.services.imports.osm import difference_of_osm
 from inspection.services.proposals import osm
 from inspection.services.proposals.reading import Change, FileRefused, Provenance, Reading
-from tests.accounts.users import a_user
 from tests.inspection.imports.osm_files import small_line, write_osm
-from workspace.models import AuditEntry, Role, User
+from workspace.models import AuditEntry, User
 
 pytestmark = pytest.mark.django_db
 ORIGIN = Provenance(file_name="a.osm", licence="ODbL 1.0")
-
-
-@pytest.fixture
-def curator() -> User:
-    return a_user(Role.CURATOR)
 
 
 def read(path: Path, **parameters: Any) -> Reading:

@@ -25,16 +25,6 @@ pytestmark = pytest.mark.django_db
 
 
 @pytest.fixture
-def curator() -> User:
-    return a_user(Role.CURATOR)
-
-
-@pytest.fixture
-def client(curator: User) -> Client:
-    return client_of(curator)
-
-
-@pytest.fixture
 def sent(client: Client) -> Callable[..., dict[str, Any]]:
     """Sends a file of a kind, and has it read."""
 

@@ -22,16 +22,6 @@ pytestmark = pytest.mark.django_db
 
 
 @pytest.fixture
-def curator() -> User:
-    return a_user(Role.CURATOR)
-
-
-@pytest.fixture
-def client(curator: User) -> Client:
-    return client_of(curator)
-
-
-@pytest.fixture
 def source(settings: Any) -> Iterator[Server]:
     """The authority's server: /zones.json answers what a test puts there."""
     with serving() as server:

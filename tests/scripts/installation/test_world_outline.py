@@ -6,7 +6,7 @@ from pathlib import Path
 
 from scripts.installation.world_outline import simplified, write_outline
 
-PROJECT_DIR = Path(__file__).resolve().parents[2]
+PROJECT_DIR = Path(__file__).resolve().parents[3]
 
 
 def test_an_arc_of_two_countries_is_a_border_and_one_of_one_country_a_coast(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from scripts.installation import python_libraries
 from scripts.installation.python_libraries import CannotInstall, find_uv, is_installed, settings_of_pip
 
-PROJECT_DIR = Path(__file__).resolve().parent.parent.parent
+PROJECT_DIR = Path(__file__).resolve().parents[3]
 BASES = {  # each lock adds to one
     "requirements.txt": None,
     "requirements-dev.txt": "requirements.txt",

@@ -11,7 +11,7 @@ from django.test import Client
 from inspection.models import NoFlyZone
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, post
-from tests.missions.test_manual_edits import as_wished, longest_leg, planned_with, put
+from tests.missions.manual_edits.test_manual_edits import as_wished, longest_leg, planned_with, put
 from tests.missions.worlds import World, world, zone_around
 from workspace.models import Role
 
