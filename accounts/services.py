@@ -52,6 +52,8 @@ def change_organisation(
     *, organisation: Organisation, actor: User, values: Mapping[str, Any], expected_revision: int | None = None
 ) -> Organisation:
     """Change name and time zone, with an entry in the history. Raises OrganisationChanged."""
+    if not values:
+        return organisation
     with transaction.atomic():
         held = Organisation.objects.select_for_update().get(pk=organisation.pk)
         if expected_revision is not None and held.revision != expected_revision:

@@ -17,12 +17,16 @@ SOURCES = settings.BASE_DIR / "static"
 MAP_LIBRARY = "node_modules/.spanwise/maplibre-gl/maplibre-gl.mjs"
 BROTLI_QUALITY = 9  # 11 saves another 8 % and takes 6 s more
 MAP_WORKER = "lib/maplibre-gl/maplibre-gl-worker.mjs"
-LATER = ("js/fleet/fleet_map.js", "js/scene/panel.js")  # imported by pages with a map once they are needed
-ALONE = ("js/account/passkey_form.js", "js/admin/geometry_map.js", "js/offline/main.js")  # they need little of what others share
+LAZY_ENTRIES = ("js/fleet/fleet_map.js", "js/scene/panel.js")  # imported by pages with a map once they are needed
+STANDALONE_ENTRIES = (
+    "js/account/passkey_form.js",
+    "js/admin/geometry_map.js",
+    "js/offline/main.js",
+)  # they need little of what others share
 OPTIONS = ("--bundle", "--format=esm", "--charset=utf8", "--log-level=warning")
-OF_PAGES = ("--minify", "--sourcemap", "--entry-names=[dir]/[name]-[hash]", "--chunk-names=js/shared/[name]-[hash]")
+PAGE_OPTIONS = ("--minify", "--sourcemap", "--entry-names=[dir]/[name]-[hash]", "--chunk-names=js/shared/[name]-[hash]")
 
-OF_MAPS = "pages with a map"
+MAP_PAGES = "pages with a map"
 
 Graph = Mapping[str, Collection[str]]  # of modules: what each imports statically
 
@@ -41,20 +45,23 @@ class Bundle(NamedTuple):
 def build(static_root: Path) -> tuple[dict[str, Bundle], set[str]]:
     """Build the bundles of all pages. Return them by the names of their sources, and the paths of all files."""
     folder, entries = static_root / FOLDER, static_root / FOLDER / "entries"
-    scripts = {name: SOURCES / name for name in _names("js/*/main.js") if name not in ALONE}
+    scripts = {name: SOURCES / name for name in _names("js/*/main.js") if name not in STANDALONE_ENTRIES}
     with tempfile.TemporaryDirectory() as scratch:
         graph = _graph(_esbuild(scripts, Path(scratch), "--splitting")["inputs"])
     shared = shared_modules([f"static/{name}" for name in scripts], graph)
-    for name in (*scripts, *LATER):
+    for name in (*scripts, *LAZY_ENTRIES):
         scripts[name] = entries / name
         scripts[name].parent.mkdir(parents=True, exist_ok=True)
-        imported = (settings.BASE_DIR / path for path in shared.get(f"static/{name}", shared[OF_MAPS]))
+        imported = (settings.BASE_DIR / path for path in shared.get(f"static/{name}", shared[MAP_PAGES]))
         lines = [*(f'import "{path}";' for path in imported), f'export * from "{SOURCES / name}";']
         scripts[name].write_text("\n".join(lines))
-    alone = {name: SOURCES / name for name in (*ALONE, *_names("css/pages/*.css"))}
+    alone = {name: SOURCES / name for name in (*STANDALONE_ENTRIES, *_names("css/pages/*.css"))}
     alone[MAP_WORKER] = settings.BASE_DIR / Path(MAP_LIBRARY).parent / Path(MAP_WORKER).name
     scripts["js/shared/map_library.js"] = settings.BASE_DIR / MAP_LIBRARY  # an entry, so that no other module is in its chunk
-    outputs = _esbuild(scripts, folder, "--splitting", *OF_PAGES, later=entries)["outputs"] | _esbuild(alone, folder, *OF_PAGES)["outputs"]
+    outputs = (
+        _esbuild(scripts, folder, "--splitting", *PAGE_OPTIONS, later=entries)["outputs"]
+        | _esbuild(alone, folder, *PAGE_OPTIONS)["outputs"]
+    )
     shutil.rmtree(entries)
 
     graph = _graph(outputs)
@@ -87,7 +94,7 @@ def shared_modules(pages: Iterable[str], graph: Graph) -> dict[str, list[str]]:
     """Return the modules that each page loads beside its own, so that esbuild makes of them one chunk for all pages and one for maps.
 
     esbuild makes a chunk for each set of pages that share modules, which are many small ones; a module that all pages load is in one.
-    Under OF_MAPS is what pages with a map load.
+    Under MAP_PAGES is what pages with a map load.
     """
     reached = {page: set(_reached(page, graph)) for page in pages}
     with_map = {page for page, modules in reached.items() if MAP_LIBRARY in modules}
@@ -99,7 +106,7 @@ def shared_modules(pages: Iterable[str], graph: Graph) -> dict[str, list[str]]:
     several = {module: using for module, using in users.items() if len(using) > 1}
     for_all = sorted(module for module, using in several.items() if using - with_map)
     for_maps = sorted(several)
-    return {page: for_maps if page in with_map else for_all for page in reached} | {OF_MAPS: for_maps}
+    return {page: for_maps if page in with_map else for_all for page in reached} | {MAP_PAGES: for_maps}
 
 
 def _graph(modules: Mapping[str, Any]) -> Graph:

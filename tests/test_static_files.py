@@ -13,7 +13,7 @@ from django.core.management import call_command
 from django.template import Context, Template
 from django.utils import translation
 
-from config.page_bundles import ALONE, BundlesFailed, build, shared_modules
+from config.page_bundles import STANDALONE_ENTRIES, BundlesFailed, build, shared_modules
 from config.static_files import StaticFiles
 
 IMPORTED = re.compile(r"""(?:\bfrom|\bimport)\s*["']([./][^"']+)["']""")
@@ -147,7 +147,7 @@ def test_what_pages_without_a_map_share_is_loaded_by_all_pages() -> None:
 
 
 def test_a_small_page_loads_one_file(storage: StaticFiles) -> None:
-    assert {name: storage.chunks[name] for name in ALONE} == {name: [] for name in ALONE}
+    assert {name: storage.chunks[name] for name in STANDALONE_ENTRIES} == {name: [] for name in STANDALONE_ENTRIES}
 
 
 @pytest.mark.long

@@ -7,10 +7,11 @@ from django.db import transaction
 from django.db.models import Count, F, Q, QuerySet
 from django.utils import timezone
 
-from inspection.models import Asset, AssetSet, DataImport, Region, ZoneSet
+from inspection.models import Asset, AssetSet, DataImport, NoFlyZone, Region, ZoneSet
 from inspection.region_hooks import after_deletion
 from inspection.selectors.assets import Box, area_of
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
+from inspection.services.imports.regions import fit_regions, lies_within
 from inspection.services.imports.terrain import remove_terrain
 from inspection.services.imports.zone_sets import empty_zone_set
 from workspace.audit import record_change
@@ -36,40 +37,43 @@ class AssetGroup:
         }
 
 
-def assets_of_region(region: AssetGroup) -> QuerySet[Asset]:
+def assets_of_group(group: AssetGroup) -> QuerySet[Asset]:
     """Return assets from files; drawn or manually edited ones stay, since no file would restore them."""
     sourced = Q(osm_id__isnull=False) | Q(asset_set__isnull=False)
     assets = Asset.objects.filter(sourced, vanished_at=None, is_edited=False).order_by()
-    if region.box is not None:
-        assets = assets.filter(geometry__intersects=area_of(region.box))
-    if region.region is not None:
-        assets = assets.filter(data_import__region=region.region)
-    if region.data_import is not None:
-        assets = assets.filter(data_import=region.data_import)
-    return assets.filter(asset_set=region.asset_set) if region.asset_set is not None else assets
+    if group.box is not None:
+        assets = assets.filter(geometry__intersects=area_of(group.box))
+    if group.region is not None:
+        assets = assets.filter(data_import__region=group.region)
+    if group.data_import is not None:
+        assets = assets.filter(data_import=group.data_import)
+    return assets.filter(asset_set=group.asset_set) if group.asset_set is not None else assets
 
 
-def counts_of_region(region: AssetGroup) -> dict[str, int]:
-    return dict(assets_of_region(region).values_list("kind").annotate(Count("pk")))
+def counts_of_group(group: AssetGroup) -> dict[str, int]:
+    return dict(assets_of_group(group).values_list("kind").annotate(Count("pk")))
 
 
-def delete_region(*, region: AssetGroup, actor: User | None) -> dict[str, int]:
-    """Mark all assets of the region as vanished and return the number of each kind; missions keep their references.
+def delete_assets(*, group: AssetGroup, actor: User | None) -> dict[str, int]:
+    """Mark all assets of the group as vanished and return the number of each kind; missions keep their references.
 
-    The next file that has an asset restores it. One history entry records the user and the region.
+    The next file that has an asset restores it. One history entry records the user and the group.
     """
     with transaction.atomic():
         hold_ground()
-        counts = counts_of_region(region)
+        counts = counts_of_group(group)
         if not counts:
             return {}
         now = timezone.now()
-        assets_of_region(region).update(vanished_at=now, revision=F("revision") + 1, updated_at=now)
+        assets = assets_of_group(group)
+        regions = list(assets.exclude(data_import__region=None).values_list("data_import__region", flat=True).distinct())
+        assets.update(vanished_at=now, revision=F("revision") + 1, updated_at=now)
+        fit_regions(regions)
         number_supports()
         organisation = actor.organisation if actor else Organisation.objects.get(pk=DEFAULT_ORGANISATION_ID)
         record_change(
             organisation=organisation, actor=actor, action="deleted", subject_type="region", subject_id=now.isoformat(),
-            before={**region.words, "counts": counts},
+            before={**group.words, "counts": counts},
         )  # fmt: skip
         mark_ground_changed()
     return counts
@@ -80,7 +84,7 @@ class NameTaken(Exception):
 
 
 def rename_region(*, region: Region, name: str, actor: User) -> None:
-    """Raises NameTaken."""
+    """Rename a region. Raises NameTaken."""
     with transaction.atomic():
         hold_ground()
         if Region.objects.filter(name=name).exclude(pk=region.pk).exists():
@@ -93,23 +97,45 @@ def rename_region(*, region: Region, name: str, actor: User) -> None:
         )  # fmt: skip
 
 
-def delete_all_of_region(*, region: Region, actor: User) -> dict[str, int]:
-    """Delete assets, zones and terrain of a region, and what other apps have of the demo there. Returns the number of each."""
+def delete_region(*, region: Region, actor: User) -> dict[str, int]:
+    """Delete assets, zones and terrain of a region, and the demo's UAVs if it is the demo and the actor plans. Returns their numbers.
+
+    Zone sets and terrain that reach beyond the region serve others too, and stay.
+    """
     with transaction.atomic():
-        counts = counts_of_whole_region(region)
-        is_demo = region.imports.filter(is_synthetic=True).exists()
-        for zone_set in ZoneSet.objects.filter(data_import__region=region):
+        hold_ground()
+        counts = counts_of_region(region)
+        is_demo = _is_demo(region)
+        for zone_set in _zone_sets_of(region):
             empty_zone_set(zone_set=zone_set, actor=actor)
-        for data_import in region.imports.filter(terrain_tiles__isnull=False).distinct():
+        for data_import in _terrain_of(region):
             remove_terrain(data_import=data_import, actor=actor)
-        delete_region(region=AssetGroup(region=region), actor=actor)
-        if is_demo:
+        delete_assets(group=AssetGroup(region=region), actor=actor)
+        if is_demo and actor.can_plan:
             after_deletion(actor)
     return counts
 
 
-def counts_of_whole_region(region: Region) -> dict[str, int]:
-    zones = ZoneSet.objects.filter(data_import__region=region).aggregate(found=Count("zones"))["found"]
-    terrain = region.imports.filter(terrain_tiles__isnull=False).distinct().count()
-    counts = counts_of_region(AssetGroup(region=region)) | {"zone": zones, "terrain": terrain}
+def counts_of_region(region: Region) -> dict[str, int]:
+    """Return what delete_region deletes: assets and zones by number, and files of terrain."""
+    zones = NoFlyZone.objects.filter(zone_set__in=_zone_sets_of(region)).count()
+    counts = counts_of_group(AssetGroup(region=region)) | {"zone": zones, "terrain": len(_terrain_of(region))}
     return {kind: number for kind, number in counts.items() if number}
+
+
+def _is_demo(region: Region) -> bool:
+    return region.imports.filter(is_synthetic=True).exists()
+
+
+def _zone_sets_of(region: Region) -> list[ZoneSet]:
+    rows = ZoneSet.objects.filter(data_import__region=region).select_related("data_import")
+    return [row for row in rows if row.data_import is not None and _is_of(row.data_import, region)]
+
+
+def _terrain_of(region: Region) -> list[DataImport]:
+    return [row for row in region.imports.filter(terrain_tiles__isnull=False).distinct() if _is_of(row, region)]
+
+
+def _is_of(data_import: DataImport, region: Region) -> bool:
+    """Return whether data belong to this region alone: they do not reach beyond it, or are part of the demo."""
+    return data_import.is_synthetic or lies_within(data_import, region)

@@ -35,8 +35,8 @@ def ground_profile(terrain: TiledTerrain, start: FloatArray, end: FloatArray) ->
     leg, share = _crossings(start, end, terrain.lattice, terrain.size)
     order = np.lexsort((share, leg))
     first, shares = _pieces(leg[order], share[order], len(start))
-    heights_m = terrain.heights_at(_looked_at(start, end, first, shares)).heights_m.reshape(-1, 3)
-    _drawn_to_ends(start, end, first, shares, heights_m)
+    heights_m = terrain.heights_at(_sample_positions(start, end, first, shares)).heights_m.reshape(-1, 3)
+    _extrapolate_to_ends(start, end, first, shares, heights_m)
     return GroundProfile(first, shares, heights_m)
 
 
@@ -149,7 +149,7 @@ def _inside(length: float, leg_deg: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _looked_at(start: FloatArray, end: FloatArray, first: IntArray, shares: FloatArray) -> FloatArray:
+def _sample_positions(start: FloatArray, end: FloatArray, first: IntArray, shares: FloatArray) -> FloatArray:
     """Positions near the begin, in the middle and near the end of each piece, (3 p, 2)."""
     positions = np.empty((3 * len(shares), 2))
     for leg in range(len(first) - 1):
@@ -164,7 +164,7 @@ def _looked_at(start: FloatArray, end: FloatArray, first: IntArray, shares: Floa
 
 
 @njit(cache=True, nogil=True)
-def _drawn_to_ends(start: FloatArray, end: FloatArray, first: IntArray, shares: FloatArray, heights_m: FloatArray) -> None:
+def _extrapolate_to_ends(start: FloatArray, end: FloatArray, first: IntArray, shares: FloatArray, heights_m: FloatArray) -> None:
     """Turn heights near the ends of pieces into those at their ends, by the quadratic through all three."""
     for leg in range(len(first) - 1):
         leg_deg = max(abs(end[leg, 0] - start[leg, 0]), abs(end[leg, 1] - start[leg, 1]))

@@ -10,14 +10,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.terrain.heights import NO_WEIGHT, HeightGrid
+from inspection.terrain.heights import NO_WEIGHT, BoolArray, HeightGrid
 
 _EDGE_DEG = 1e-9
 EDGE = 1e-3  # of a step: positions nearer to a tile may be in it by rounding
 FEW_TILES = 32  # so few are looked through faster than a tree finds the right ones
 
 IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

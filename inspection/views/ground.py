@@ -28,7 +28,7 @@ from inspection.views.parameters import BOX_TEXT, box_of, invalid
 from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer
 
-EDITION_KEPT_S = 600
+TILE_MAX_AGE_S = 600
 TILE_TYPE = "application/vnd.mapbox-vector-tile"
 
 
@@ -142,7 +142,7 @@ class Tile(APIView):
     @extend_schema(
         operation_id="get_tile",
         summary="A vector tile of assets and zones",
-        description="Layers lines, railways, bridges, bridge_points, towers, zones, zone_labels; empty where there is nothing. "
+        description="Layers lines, railways, bridges, bridge_points, towers, zones, zone_labels, counts; empty where there is nothing. "
         "Labels and details are in the reader's language. The ETag changes with the ground and the language.",
         parameters=[
             OpenApiParameter(
@@ -169,5 +169,5 @@ class Tile(APIView):
         response["ETag"] = etag
         is_of_version = changed_at is not None and request.query_params.get("of") == dataset_version
         # A page that is open does not learn of a new zone here: it asks again after that time.
-        response["Cache-Control"] = f"private, max-age={EDITION_KEPT_S}" if is_of_version else "private, no-cache"
+        response["Cache-Control"] = f"private, max-age={TILE_MAX_AGE_S}" if is_of_version else "private, no-cache"
         return response

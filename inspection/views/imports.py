@@ -178,7 +178,7 @@ class ImportUndo(APIView):
     @extend_schema(
         operation_id="undo_import",
         summary="Propose the undoing of an applied import of assets",
-        description="It is shown as a difference and applied like any other import. Rows that somebody edited since, or that a later "
+        description="It is shown as a difference and applied like any other import. Rows that a user edited since, or that a later "
         "import changed, stay. A zone set is rolled back instead.",
         request=None,
         responses={202: ProposalSerializer, 409: OpenApiResponse(description="It is not applied, or cannot be undone.")},

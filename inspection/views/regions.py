@@ -13,9 +13,9 @@ from inspection.selectors.ground import regions_in_use
 from inspection.services.regions import (
     AssetGroup,
     NameTaken,
+    counts_of_group,
     counts_of_region,
-    counts_of_whole_region,
-    delete_all_of_region,
+    delete_assets,
     delete_region,
     rename_region,
 )
@@ -40,7 +40,10 @@ class RegionInputSerializer(serializers.Serializer):
     import_id = serializers.IntegerField(required=False, min_value=1, max_value=MAX_NUMBER, help_text="a data import")
     set = serializers.CharField(max_length=200, required=False, help_text="the name of a set of assets")
     region_id = serializers.IntegerField(
-        required=False, min_value=1, max_value=MAX_NUMBER, help_text="a region: its zones and terrain too, and UAVs of the demo"
+        required=False,
+        min_value=1,
+        max_value=MAX_NUMBER,
+        help_text="a region: its zones and terrain too, unless they reach beyond it, and UAVs of the demo",
     )
     dry_run = serializers.BooleanField(default=False, help_text="only count")
 
@@ -55,7 +58,9 @@ class RegionInputSerializer(serializers.Serializer):
 
 
 class RegionCountsSerializer(serializers.Serializer):
-    counts = serializers.DictField(child=serializers.IntegerField(), help_text="assets by kind that are taken off, or would be")
+    counts = serializers.DictField(
+        child=serializers.IntegerField(), help_text="what is deleted, or would be: assets by kind, `zone`, `terrain`"
+    )
 
 
 class RegionSerializer(serializers.Serializer):
@@ -114,7 +119,8 @@ class RegionDelete(APIView):
     @extend_schema(
         operation_id="delete_region",
         summary="Delete all assets of a box, an import, a set or a region",
-        description="What was drawn or edited by hand stays, missions keep what they point at, and the next file brings the rest back.",
+        description="Assets that were drawn or edited by hand stay, missions keep their references, and the next file restores the others. "
+        "Of a region the zones and terrain are deleted too, unless they reach beyond it; of the demo also its UAVs, if the user plans.",
         request=RegionInputSerializer,
         responses=RegionCountsSerializer,
     )
@@ -123,15 +129,15 @@ class RegionDelete(APIView):
         body.is_valid(raise_exception=True)
         if "region_id" in body.validated_data:
             return Response({"counts": self._whole(body.validated_data, request)})
-        region = self._region(body.validated_data)
-        act = counts_of_region(region) if body.validated_data["dry_run"] else delete_region(region=region, actor=request.user)
+        group = self._group(body.validated_data)
+        act = counts_of_group(group) if body.validated_data["dry_run"] else delete_assets(group=group, actor=request.user)
         return Response({"counts": act})
 
     def _whole(self, values: dict[str, Any], request: SignedInRequest) -> dict[str, int]:
         region = region_of(values["region_id"])
-        return counts_of_whole_region(region) if values["dry_run"] else delete_all_of_region(region=region, actor=request.user)
+        return counts_of_region(region) if values["dry_run"] else delete_region(region=region, actor=request.user)
 
-    def _region(self, values: dict[str, Any]) -> AssetGroup:
+    def _group(self, values: dict[str, Any]) -> AssetGroup:
         if "bbox" in values:
             west, south, east, north = values["bbox"]
             return AssetGroup(box=(west, south, east, north))

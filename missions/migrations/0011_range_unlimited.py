@@ -1,4 +1,4 @@
-"""An unlimited range is chosen on purpose. UAVs without a type, range or battery stay incomplete until somebody states one."""
+"""An unlimited range is chosen on purpose. UAVs without a type, range or battery stay incomplete until one is stated."""
 
 from django.db import migrations, models
 

@@ -51,7 +51,7 @@ def reason_of(finding: Mapping[str, Any], names: Mapping[int, str], places: Wayp
     facts["said"] = why_text([said_why] if said_why else [], str(facts.get("said") or ""))
     several = (facts.get("flights") or 1) > 1
     facts["flight"] = f" ({_('flight %(number)s') % {'number': facts['number']}})" if several else ""
-    facts["place"] = places.get((finding.get("uav", -1), facts.get("waypoint") or 0)) or _numbered(facts.get("waypoint"))
+    facts["place"] = places.get((finding.get("uav", -1), facts.get("waypoint", -1))) or _numbered(facts.get("waypoint"))
     shown = {name: _shown(name, value) for name, value in facts.items()}
     sentence = SENTENCES.get(finding["code"])
     return str(finding["code"]) if sentence is None else (_(sentence) % shown).strip()

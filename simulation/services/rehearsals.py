@@ -3,12 +3,14 @@
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from datetime import timedelta
+from datetime import datetime, timedelta
+from functools import lru_cache
 from typing import Any
 from uuid import UUID
 
 from django.conf import settings
 from django.db import transaction
+from django.db.models import Count, Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
@@ -40,7 +42,7 @@ from simulation.services.surroundings import ground_of_plan, surroundings_of
 from simulation.vehicle_protocol.fence import rally_points_of
 from workspace.audit import record_change
 from workspace.jobs.services import cancel_job, create_job_within, finish_job
-from workspace.models import Job, Organisation, User
+from workspace.models import Job, JobState, Organisation, User
 
 REUSED_FOR = timedelta(hours=24)  # another version of the program may fly differently
 REHEARSE = "simulation.tasks.rehearse_mission"
@@ -332,10 +334,23 @@ def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
 
 def failed_rehearsals(missions: Sequence[Mission]) -> set[UUID]:
     """Return the keys of the missions whose present plan failed its newest rehearsal."""
-    failed = Rehearsal.objects.filter(mission__in=[mission.pk for mission in missions], level=AssessmentLevel.FAIL)
-    known = set(failed.order_by().values_list("mission", flat=True).distinct())
-    asked = (mission_of_organisation(mission.organisation, mission.pk) for mission in missions if mission.pk in known)
-    return {mission.pk for mission in asked if _has_failed(mission)}
+    done = Rehearsal.objects.filter(mission__in=[mission.pk for mission in missions], job__state=JobState.DONE).order_by()
+    newest = {
+        row["mission"]: row["newest"]
+        for row in done.values("mission").annotate(newest=Max("created_at"), failed=Count("pk", filter=Q(level=AssessmentLevel.FAIL)))
+        if row["failed"]
+    }
+    return {
+        mission.pk
+        for mission in missions
+        if mission.pk in newest and _had_failed(mission.organisation_id, mission.pk, mission.revision, newest[mission.pk])
+    }
+
+
+@lru_cache(maxsize=1_000)
+def _had_failed(organisation_id: int, mission_id: UUID, revision: int, newest: datetime) -> bool:
+    """Return _has_failed for a list, where a plan is not made into a document again until the mission or its rehearsals change."""
+    return _has_failed(mission_of_organisation(Organisation(pk=organisation_id), mission_id))
 
 
 def _has_failed(mission: Mission) -> bool:

@@ -4151,7 +4151,7 @@ export interface components {
             uavs: components["schemas"]["UavPreflight"][];
         };
         PreflightCheck: {
-            /** @description crash, link, position, home, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts */
+            /** @description crash, incomplete, link, position, home, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts */
             code: string;
             /**
              * @description failed: it is not started
@@ -4917,7 +4917,7 @@ export interface components {
             attribution: string[];
         };
         RegionCounts: {
-            /** @description assets by kind that are taken off, or would be */
+            /** @description what is deleted, or would be: assets by kind, `zone`, `terrain` */
             counts: {
                 [key: string]: number;
             };
@@ -4930,7 +4930,7 @@ export interface components {
             import_id?: number;
             /** @description the name of a set of assets */
             set?: string;
-            /** @description a region: its zones and terrain too, and UAVs of the demo */
+            /** @description a region: its zones and terrain too, unless they reach beyond it, and UAVs of the demo */
             region_id?: number;
             /**
              * @description only count

@@ -20,7 +20,7 @@ from inspection.selectors import ground_revision
 from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
 from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
 from missions.selectors.commands import upload_of
-from missions.selectors.fleet import performance_of
+from missions.selectors.fleet import incomplete_uavs, performance_of
 from missions.selectors.missions import approval_in_force, mission_of_organisation
 from missions.services.approval.checks import check_approval
 from missions.services.commands.dispatch import TO_SEND
@@ -28,11 +28,12 @@ from missions.services.commands.planned_starts import routes_not_begun, uavs_bei
 from missions.services.commands.refused import RefusalReason
 from missions.services.commands.rtl_check import ReturnCheck, ReturnState, return_checks
 from missions.services.commands.start_slots import reasons_to_wait
+from operation.reasons import Reason
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import down_off_plan
 from telemetry.services.alerts.approved_flights import approved_content
 from workspace.models import Organisation
-from workspace.reason_texts import column_text
+from workspace.reason_texts import column_text, reason_text
 
 RECEIVED_WITHIN = timedelta(seconds=15)  # companions report every 10 s
 BATTERY_WITHIN = timedelta(seconds=60)
@@ -181,7 +182,7 @@ def _uav_preflight(uav: Uav, route: Route, approval: Approval, found: _OnTheMap,
     onboard = _onboard_mission(uav, approval, link)
     is_loaded = onboard.state in (CheckState.OK, CheckState.WARNING)
     checks = (
-        *_crash(uav, down), _link(link, reported, now), _position(route, reported), _home(uav, route, link),
+        *_crash(uav, down), *_incomplete(uav, place.name), _link(link, reported, now), _position(route, reported), _home(uav, route, link),
         _battery(uav, route, reported, now), onboard, *_fence(uav, place.name, approval, link),
         *_returns(found.returns.get(place.sequence)), _wind(route.mission, reported),
         *(_others(uav, route, now) if is_loaded else ()), *_against(found.reasons, place.sequence),
@@ -193,6 +194,11 @@ def _crash(uav: Uav, down: Collection[int]) -> Iterator[Check]:
     if uav.pk in down:
         words = _("It has crashed, or is down away from its plan. Close that alert with what became of it.")
         yield Check("crash", CheckState.FAILED, words)
+
+
+def _incomplete(uav: Uav, name: str) -> Iterator[Check]:
+    for code in incomplete_uavs([uav]).values():
+        yield Check("incomplete", CheckState.FAILED, reason_text(Reason(f"uav_{code}", {"uav": name})))
 
 
 def _link(link: UavLink, reported: Reported, now: datetime) -> Check:

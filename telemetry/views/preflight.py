@@ -16,7 +16,7 @@ from workspace.api.signed_in import SignedInRequest
 
 class PreflightCheckSerializer(serializers.Serializer):
     code = serializers.CharField(
-        help_text="crash, link, position, home, battery, mission, fence, return, wind, others, departure, ground, "
+        help_text="crash, incomplete, link, position, home, battery, mission, fence, return, wind, others, departure, ground, "
         "or a reason that refuses starts"
     )
     state = serializers.ChoiceField(choices=[(state.value, state.value) for state in CheckState], help_text="failed: it is not started")

@@ -5,7 +5,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from inspection.models import AssetSet, DataImport
-from inspection.services.regions import AssetGroup, counts_of_region, delete_region
+from inspection.services.regions import AssetGroup, counts_of_group, delete_assets
 
 
 class Command(BaseCommand):
@@ -22,12 +22,12 @@ class Command(BaseCommand):
         parser.add_argument("--yes", action="store_true", help="do it")
 
     def handle(self, *args: Any, **options: Any) -> None:
-        region = self._region(options)
-        counts = delete_region(region=region, actor=None) if options["yes"] else counts_of_region(region)
+        group = self._group(options)
+        counts = delete_assets(group=group, actor=None) if options["yes"] else counts_of_group(group)
         words = ", ".join(f"{number} {kind}" for kind, number in sorted(counts.items())) or "nothing"
         self.stdout.write(f"{words} taken off the ground" if options["yes"] else f"{words} would go; --yes does it")
 
-    def _region(self, options: dict[str, Any]) -> AssetGroup:
+    def _group(self, options: dict[str, Any]) -> AssetGroup:
         if options["bbox"]:
             try:
                 west, south, east, north = (float(part) for part in options["bbox"].split(","))

@@ -48,6 +48,7 @@ _EXCLUDED = f"""
 DELETE FROM asset_fate WHERE ctid IN (
     SELECT f.ctid FROM asset_fate f LEFT JOIN asset_staging s ON s.id = f.staging_id WHERE {_KEY} = ANY(%(excluded)s))
 """
+_WITHOUT_FATE = "DELETE FROM asset_staging s WHERE NOT EXISTS (SELECT FROM asset_fate f WHERE f.staging_id = s.id)"
 _BY_KIND = """
 SELECT COALESCE(a.kind, s.kind), f.fate, count(*)
 FROM asset_fate f LEFT JOIN asset_staging s ON s.id = f.staging_id LEFT JOIN inspection_asset a ON a.id = f.asset_id GROUP BY 1, 2
@@ -199,6 +200,7 @@ class Merge:
         cursor.execute(source.fates, self._values)
         if excluded:
             cursor.execute(_EXCLUDED, {"excluded": list(excluded)})
+            cursor.execute(_WITHOUT_FATE)  # what follows the merge reads the staged rows too
         cursor.execute("ANALYZE asset_fate")
         cursor.execute("SELECT fate, count(*), count(*) FILTER (WHERE is_edited AND staging_id IS NOT NULL) FROM asset_fate GROUP BY fate")
         found = {fate: (number, edited) for fate, number, edited in cursor.fetchall()}

@@ -1,9 +1,9 @@
 """Undo an import of assets: its new rows are marked as removed, changed and removed ones get the facts that they had before it.
 
-Rows that somebody edited, or that a later import changed, stay as they are.
+Rows that a user edited, or that a later import changed, stay as they are.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import timedelta
 from typing import Any
@@ -17,6 +17,7 @@ from inspection.models import Asset, ChangeAction, DataImport
 from inspection.services.curation import centre_of
 from inspection.services.facts import asset_facts, take_asset_facts
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
+from inspection.services.imports.regions import fit_regions
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
 
 MAX_IMPORT_TIME = timedelta(hours=12)  # the entries of an import are written in its transaction
@@ -88,6 +89,7 @@ def write_undo(found: AssetUndo, *, actor: User | None) -> None:
     hold_ground()
     now = timezone.now()
     entries, rows = [], []
+    origins = DataImport.objects.in_bulk({(entry.before or {}).get("data_import_id") for _asset, entry in found.restored} - {None})
     for action, asset, facts in found.changes():
         if action == ChangeAction.KEPT:
             continue
@@ -95,7 +97,7 @@ def write_undo(found: AssetUndo, *, actor: User | None) -> None:
         if facts is None:
             asset.vanished_at = now
         else:
-            _restore(asset, facts)
+            _restore(asset, facts, origins)
         asset.revision += 1
         asset.updated_at = now
         rows.append(asset)
@@ -112,17 +114,17 @@ def write_undo(found: AssetUndo, *, actor: User | None) -> None:
         )
     AuditEntry.objects.bulk_create(entries, batch_size=BATCH)
     Asset.objects.bulk_update(rows, _WRITTEN, batch_size=BATCH)
+    fit_regions({row.data_import.region_id for row in rows if row.data_import is not None and row.data_import.region_id is not None})
     if number_supports() or rows:
         mark_ground_changed()
 
 
-def _restore(asset: Asset, facts: dict[str, Any]) -> None:
-    """Set the row to the facts, with everything that is derived from them."""
+def _restore(asset: Asset, facts: dict[str, Any], origins: Mapping[int, DataImport]) -> None:
+    """Set the row to the facts, with everything that is derived from them. origins: the imports of all such facts, by key."""
     in_file = asset_facts(asset)
     take_asset_facts(asset, facts)
     asset.content_hash = facts.get("content_hash") or asset.content_hash
-    origin = facts.get("data_import_id")
-    asset.data_import = (None if origin is None else DataImport.objects.filter(pk=origin).first()) or asset.data_import
+    asset.data_import = origins.get(facts.get("data_import_id", 0)) or asset.data_import
     asset.is_edited = bool(facts.get("is_edited"))
     asset.source_facts = in_file if asset.is_edited else None
     asset.vanished_at = (asset.vanished_at or timezone.now()) if facts.get("vanished") else None

@@ -1,6 +1,7 @@
 """Regions of imports: each import joins the region that it overlaps, or makes one."""
 
 import re
+from collections.abc import Iterable
 
 from django.contrib.gis.db.models import Extent
 from django.contrib.gis.geos import Polygon
@@ -21,16 +22,39 @@ def join_region(data_import: DataImport) -> Region | None:
     extent = extent_of_import(data_import)
     if extent is None:
         return None
-    region = _overlapped(extent)
+    region = _overlapped(extent, is_synthetic=data_import.is_synthetic)
     if region is None:
         region = Region.objects.create(name=_free_name(data_import, extent), extent=Polygon.from_bbox(extent))
-    elif data_import.kind in OF_ASSETS and not region.imports.filter(kind__in=OF_ASSETS).exists():
-        region.name = _free_name(data_import, extent, but=region)  # so far it has the name of a file of zones or terrain
+    elif data_import.kind in OF_ASSETS and _has_name_of_zones_or_terrain(region):
+        region.name = _free_name(data_import, extent, but=region)
+        region.save(update_fields=["name"])
     data_import.region = region
     data_import.save(update_fields=["region"])
-    region.extent = Polygon.from_bbox(_extent_of_assets(region) or _around(region.extent.extent, extent))
-    region.save(update_fields=["name", "extent"])
+    region.extent = Polygon.from_bbox(_around(region.extent.extent, extent))
+    region.save(update_fields=["extent"])
+    fit_regions([region.pk])
     return region
+
+
+def fit_regions(keys: Iterable[int]) -> None:
+    """Set the extents of these regions to those of their assets. One without assets keeps its extent. Under hold_ground."""
+    for region in Region.objects.filter(pk__in=list(keys)):
+        extent = _grown(Asset.objects.filter(data_import__region=region, vanished_at=None).aggregate(found=Extent("centre"))["found"])
+        if extent is not None and extent != region.extent.extent:
+            region.extent = Polygon.from_bbox(extent)
+            region.save(update_fields=["extent"])
+
+
+def lies_within(data_import: DataImport, region: Region) -> bool:
+    """Return whether all current data of an import lie within the extent of a region."""
+    extent = extent_of_import(data_import)
+    return extent is not None and _around(region.extent.extent, extent) == region.extent.extent
+
+
+def _has_name_of_zones_or_terrain(region: Region) -> bool:
+    """Return whether a region without assets still has the name that a file gave it."""
+    names = [name_of_file(row.file_name) for row in region.imports.all()]
+    return not region.imports.filter(kind__in=OF_ASSETS).exists() and region.name.startswith(tuple(name for name in names if name))
 
 
 def extent_of_import(data_import: DataImport) -> Box | None:
@@ -42,15 +66,10 @@ def extent_of_import(data_import: DataImport) -> Box | None:
     return _grown(Asset.objects.filter(data_import=data_import).aggregate(found=Extent("centre"))["found"])
 
 
-def _extent_of_assets(region: Region) -> Box | None:
-    return _grown(Asset.objects.filter(data_import__region=region, vanished_at=None).aggregate(found=Extent("centre"))["found"])
-
-
-def _overlapped(extent: Box) -> Region | None:
-    """Return the region that shares most of its extent or of this one, whichever is smaller."""
-    shares = [
-        (_shared(region.extent.extent, extent), region) for region in Region.objects.filter(extent__bboverlaps=Polygon.from_bbox(extent))
-    ]
+def _overlapped(extent: Box, *, is_synthetic: bool) -> Region | None:
+    """Return the region that shares most of its extent or of this one, whichever is smaller. Real data never join the demo region."""
+    regions = Region.objects.filter(extent__bboverlaps=Polygon.from_bbox(extent), imports__is_synthetic=is_synthetic).distinct()
+    shares = [(_shared(region.extent.extent, extent), region) for region in regions]
     share, found = max(shares, key=lambda entry: entry[0], default=(0.0, None))
     return found if share >= SAME_REGION_SHARE else None
 

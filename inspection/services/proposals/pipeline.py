@@ -121,7 +121,7 @@ def ask_to_apply(*, proposal: ImportProposal, parameters: dict[str, Any], actor:
             raise NotSeen(unseen)
         if any(held.parameters.get(name) != value for name, value in parameters.items() if name not in DECISIONS):
             held.ground_revision = None
-        held.parameters = held.parameters | parameters
+        held.parameters = held.parameters | {"excluded": []} | parameters  # an earlier choice is not applied unseen
         held.state = ProposalState.APPLYING
         held.decided_by, held.decided_at = actor, timezone.now()
         _give_job(held, APPLY_TASK, actor, Reason("waiting_to_be_applied"))

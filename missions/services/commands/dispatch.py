@@ -86,9 +86,9 @@ def dispatch_mission(
         if not any(0 < flight <= len(route["flights"]) for route in wanted):
             raise refuse("no_flight", _("This UAV has no such flight."), place)
         against = valid_check(check, held, now=timezone.now()).reasons
-        incomplete = incomplete_reasons(held, [route["uav"] for route in wanted])
-        refuse_for([*_uav_reasons(held, wanted), *_link_reasons(wanted), *incomplete, *against])
         to_send = [route for route in wanted if place is not None or not _is_on_its_way(approval, route["uav"])]
+        incomplete = incomplete_reasons(held, [route["uav"] for route in to_send])
+        refuse_for([*_uav_reasons(held, wanted), *_link_reasons(wanted), *incomplete, *against])
         refuse_for([] if to_send else [RefusalReason("nothing_to_send", _("Every UAV has its route already, or it is on its way."))])
         if place is not None:
             refuse_for(_flight_reasons(held, approval, to_send[0], flight))

@@ -54,6 +54,7 @@ def positions_of_bases(organisation_id: int) -> list[tuple[float, float]]:
 def delete_demo_uavs(actor: User) -> None:
     """Delete the demo's UAVs of the user's organisation, then the bases and types that they leave. Those in use by missions stay."""
     organisation = actor.organisation_id
+    types = list(UavType.objects.filter(organisation=organisation, uavs__is_demo=True).distinct())
     for uav in Uav.objects.filter(organisation=organisation, is_demo=True, twin_of=None):
         with suppress(FleetRowInUse, Refused):
             delete_uav(uav=uav, actor=actor)
@@ -62,7 +63,6 @@ def delete_demo_uavs(actor: User) -> None:
         if base is not None:
             with suppress(FleetRowInUse):
                 delete_base(base=base, actor=actor, expected_revision=None)
-    names = {uav.type_name for base in BASES for uav in base.uavs}
-    for uav_type in UavType.objects.filter(organisation=organisation, name__in=names):
+    for uav_type in types:
         with suppress(FleetRowInUse):
             delete_uav_type(uav_type=uav_type, actor=actor, expected_revision=None)
