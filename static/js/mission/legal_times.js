@@ -46,10 +46,10 @@ export function legalTimesOf({ from, to, windows, zones, margin_s = 0, height_ma
 /** Position along the bar, 0 to 1. @param {Span} bar @param {number} moment */
 export const shareOf = ({ from_ms, to_ms }, moment) => Math.min(1, Math.max(0, (moment - from_ms) / (to_ms - from_ms)));
 
-/** The moment at a share of the bar, on a full step by the clock. @param {Span} bar @param {number} share */
+/** The moment at a share of the bar, on a full step by the clock, before the bar's end. @param {Span} bar @param {number} share */
 export function momentAt({ from_ms, to_ms }, share) {
   const moment = Math.round((from_ms + share * (to_ms - from_ms)) / STEP_MS) * STEP_MS;
-  return Math.min(Math.floor(to_ms / STEP_MS) * STEP_MS, Math.max(Math.ceil(from_ms / STEP_MS) * STEP_MS, moment));
+  return Math.min((Math.ceil(to_ms / STEP_MS) - 1) * STEP_MS, Math.max(Math.ceil(from_ms / STEP_MS) * STEP_MS, moment));
 }
 
 /** The span that holds a moment; spans are open at their end. @param {Span[]} spans @param {number} moment */

@@ -44,6 +44,7 @@ test("a place on the bar is a moment and back, on full five minutes within it", 
   assert.equal(momentAt(times, 0.5), at("22T18:00:00"));
   assert.equal(momentAt(times, -1), at("21T18:05:00"));
   assert.equal(momentAt(times, 2), at("23T18:00:00"));
+  assert.equal(momentAt({ ...times, to_ms: at("23T18:00:00") }, 1), at("23T17:55:00"), "a bar is open at its end");
 });
 
 test("a departure taken from a free span stays inside it", () => {
