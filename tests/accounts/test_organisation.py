@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from django.test import Client
 
+from accounts.identity_claims import IdentityProvider
 from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, BrowserSession, Organisation, Role
 
@@ -94,3 +95,18 @@ def test_an_address_behind_an_untrusted_proxy_is_the_peers() -> None:
     client = client_of(a_user())
     client.get("/account", REMOTE_ADDR="8.8.8.8", headers={"X-Forwarded-For": "10.0.0.1"})
     assert BrowserSession.objects.get().address == "8.8.8.8"
+
+
+@pytest.mark.parametrize(("claim", "status"), [("tenant", 409), ("", 200)])
+def test_a_name_by_which_the_identity_provider_assigns_users_stays(claim: str, status: int, settings: Any) -> None:
+    settings.IDENTITY_PROVIDER = IdentityProvider(
+        issuer="https://id.example", client_id="spanwise", client_secret="any", name="Grid ID", role_claim="groups",
+        roles={"admins": "administrator"}, organisation_claim=claim, organisations={"d": "Default"} if claim else {},
+    )  # fmt: skip
+    client = client_of(a_user(Role.ADMINISTRATOR))
+    answer = change(client, name="Columbus Power")
+    assert answer.status_code == status
+    if claim:
+        assert answer.json()["error"]["code"] == "name_of_provider"
+        assert Organisation.objects.get(pk=1).name == "Default"
+        assert change(client, name="Default", time_zone="America/New_York").status_code == 200

@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+from django.db import IntegrityError
 from django.test import Client
 
 from missions.models import CommandKind, Mission, MissionUav, Uav, UavType
@@ -16,7 +17,7 @@ from missions.services.commands.steering import command_uav
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.commands.outbox import a_uav
-from tests.missions.flights import carry, dispatched, fleet
+from tests.missions.flights import approved, carry, dispatched, fleet
 from tests.missions.worlds import UAV_AT, World, request, uav, world
 from workspace.models import Role, User
 
@@ -78,6 +79,11 @@ def test_a_type_has_a_range_or_none_on_purpose_but_not_both(client: Client) -> N
     limited = a_type(client, max_range_m=9_000.0)
     assert patch(client, f"uav-types/{limited}", {"range_unlimited": True}).status_code == 400
     assert patch(client, f"uav-types/{limited}", {"range_unlimited": True, "max_range_m": None}).json()["range_unlimited"] is True
+
+
+def test_the_database_keeps_no_range_beside_an_unlimited_one() -> None:
+    with pytest.raises(IntegrityError, match="uav_type_range_or_unlimited"):
+        UavType.objects.create(name="Quad", max_range_m=9_000.0, range_unlimited=True)
 
 
 @pytest.mark.parametrize(("typed", "words"), [(False, NO_TYPE), (True, NO_RANGE)])
@@ -148,6 +154,20 @@ def test_an_approved_mission_is_neither_uploaded_nor_started_with_it(person: Use
         assert codes(refused) == {"uav_incomplete"}
     with pytest.raises(Refused) as refused:
         begin_planned_starts(mission=mission, actor=person)
+    assert "uav_incomplete" in codes(refused)
+
+
+def test_the_others_are_uploaded_while_one_that_has_its_route_lacks_its_type(person: User) -> None:
+    tern, kite_ = fleet("Tern", "Kite")
+    mission, _approval = approved(person, [tern, kite_], world().towers[4:6])
+    places = {row.uav_id: row.sequence for row in mission.mission_uavs.all()}
+    dispatch_mission(mission=mission, actor=person, place=places[kite_.pk])
+    carry(kite_)
+    Uav.objects.filter(pk=kite_.pk).update(uav_type=None)
+    (sent_to,) = dispatch_mission(mission=mission, actor=person)
+    assert sent_to.uav == tern
+    with pytest.raises(Refused) as refused:
+        dispatch_mission(mission=mission, actor=person, place=places[kite_.pk])
     assert "uav_incomplete" in codes(refused)
 
 

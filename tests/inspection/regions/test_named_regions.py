@@ -2,20 +2,25 @@
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
 from django.contrib.gis.geos import MultiPolygon, Point
+from django.db import transaction
 from django.test import Client
 
 from inspection.models import Asset, DataImport, NoFlyZone, Region, TerrainTile, ZoneSet
 from inspection.selectors.ground import regions_in_use
+from inspection.services import import_osm
 from inspection.services.ground import mark_ground_changed
+from inspection.services.imports.asset_undo import undo_of, write_undo
 from inspection.services.imports.regions import join_region, name_of_file
-from missions.models import Base, Uav
+from missions.models import Base, Uav, UavType
 from missions.services.fleet.demo_uavs import create_demo_uavs
 from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import square, tower, zone
+from tests.inspection.imports.osm_files import TOWER, small_line, write_osm
 from workspace.models import AuditEntry, Role
 
 pytestmark = pytest.mark.django_db
@@ -172,27 +177,112 @@ def test_a_curator_renames_a_region() -> None:
     assert AuditEntry.objects.get(action="renamed").before == {"name": "Ohio"}
 
 
+def terrain_of(data_import: DataImport, centre: tuple[float, float], half_deg: float) -> None:
+    TerrainTile.objects.create(
+        data_import=data_import, extent=square(centre, half_deg), west_deg=centre[0], north_deg=centre[1], step_lon_deg=1, step_lat_deg=1,
+        columns=1, rows=1, heights_amsl_m=b"",
+    )  # fmt: skip
+
+
+def zones_and_terrain(name: str, half_deg: float, **facts: Any) -> list[Region | None]:
+    """Import a zone and terrain around the Jura. Returns the regions that they joined."""
+    zones = DataImport.objects.create(kind="zones", file_name=f"{name}.json", sha256=f"z{name}", **facts)
+    zone(JURA, half_deg, zone_set=ZoneSet.objects.create(name=name, data_import=zones))
+    terrain = DataImport.objects.create(kind="terrain", file_name=f"{name}.tif", sha256=f"t{name}", **facts)
+    terrain_of(terrain, JURA, half_deg)
+    return [join_region(zones), join_region(terrain)]
+
+
+def delete(client: Client, region: Region, **facts: Any) -> dict[str, int]:
+    body = {"region_id": region.pk, **facts}
+    answer = client.post("/api/v1/regions/delete", body, content_type="application/json")
+    assert answer.status_code == 200
+    return answer.json()["counts"]  # type: ignore[no-any-return]
+
+
+def the_demo() -> Region:
+    region = an_import("demo.osm.pbf", JURA, is_synthetic=True).region
+    assert region is not None
+    assert zones_and_terrain("demo", 0.2, is_synthetic=True) == [region, region]
+    return region
+
+
 def test_the_demo_goes_with_its_zones_terrain_and_uavs_and_nothing_else() -> None:
     user = a_user(Role.ADMINISTRATOR)
     an_import("ohio.osm.pbf", OHIO)
-    region = an_import("demo.osm.pbf", JURA, is_synthetic=True).region
-    assert region is not None
+    region = the_demo()
     assert region.name == "Elme Valley"
-    zones = DataImport.objects.create(kind="zones", file_name="demo.json", sha256="z", is_synthetic=True)
-    zone(JURA, zone_set=ZoneSet.objects.create(name="demo", data_import=zones))
-    terrain = DataImport.objects.create(kind="terrain", file_name="demo.tif", sha256="t", is_synthetic=True)
-    TerrainTile.objects.create(
-        data_import=terrain, extent=square(JURA, 0.2), west_deg=JURA[0], north_deg=JURA[1], step_lon_deg=1, step_lat_deg=1, columns=1,
-        rows=1, heights_amsl_m=b"",
-    )  # fmt: skip
-    assert [join_region(zones), join_region(terrain)] == [region, region]
     create_demo_uavs(organisation=user.organisation)
     client = client_of(user)
-    body = {"region_id": region.pk}
-    counts = {"counts": {"tower": 2, "zone": 1, "terrain": 1}}
-    assert client.post("/api/v1/regions/delete", body | {"dry_run": True}, content_type="application/json").json() == counts
+    counts = {"tower": 2, "zone": 1, "terrain": 1}
+    assert delete(client, region, dry_run=True) == counts
     assert Uav.objects.exists()
-    assert client.post("/api/v1/regions/delete", body, content_type="application/json").json() == counts
+    assert delete(client, region) == counts
     assert [row.name for row in regions_in_use()] == ["Ohio"]
     assert not any(model.objects.exists() for model in (NoFlyZone, TerrainTile, Uav, Base))
     assert client.post("/api/v1/regions/delete", {"region_id": 999}, content_type="application/json").status_code == 404
+
+
+def test_a_curator_who_does_not_plan_deletes_the_demo_and_keeps_its_uavs() -> None:
+    user = a_user(Role.CURATOR)
+    region = the_demo()
+    create_demo_uavs(organisation=user.organisation)
+    fleet = (Uav.objects.count(), UavType.objects.count(), Base.objects.count())
+    assert delete(client_of(user), region) == {"tower": 2, "zone": 1, "terrain": 1}
+    assert (Uav.objects.count(), UavType.objects.count(), Base.objects.count()) == fleet
+    assert regions_in_use() == []
+
+
+def test_national_zones_and_terrain_survive_the_deletion_of_a_region_that_they_reach_beyond() -> None:
+    region = an_import("jura.osm.pbf", JURA).region
+    assert region is not None
+    assert zones_and_terrain("jura", 0.1) == [region, region]
+    assert zones_and_terrain("switzerland", 2.0) == [region, region]
+    client = client_of(a_user(Role.CURATOR))
+    counts = {"tower": 2, "zone": 1, "terrain": 1}
+    assert delete(client, region, dry_run=True) == counts
+    assert delete(client, region) == counts
+    assert [row.zone_set.name for row in NoFlyZone.objects.all() if row.zone_set] == ["switzerland"]
+    assert [row.data_import.file_name for row in TerrainTile.objects.all()] == ["switzerland.tif"]
+
+
+def test_real_data_over_the_demo_make_their_own_region_and_stay_when_the_demo_goes(tmp_path: Path) -> None:
+    demo = the_demo()
+    nodes, ways = small_line()
+    for number, (_lon, _lat, tags) in nodes.items():
+        nodes[number] = (JURA[0] + 0.004 * number, JURA[1], tags)
+    real = import_osm(path=write_osm(tmp_path / "jura.osm", nodes, ways)).region
+    assert real is not None
+    assert (real.pk != demo.pk, real.name) == (True, "Jura")
+    assert delete(client_of(a_user(Role.ADMINISTRATOR)), demo) == {"tower": 2, "zone": 1, "terrain": 1}
+    assert [(row.name, row.is_synthetic) for row in regions_in_use()] == [("Jura", False)]
+    assert Asset.objects.filter(vanished_at=None).count() == 5
+
+
+def extent_of(region: Region) -> tuple[float, ...]:
+    return tuple(round(edge, 2) for edge in Region.objects.get(pk=region.pk).extent.extent)
+
+
+def test_a_region_is_as_large_as_what_is_left_of_it_after_a_deletion() -> None:
+    region = an_import("jura.osm.pbf", JURA, half_deg=0.1).region
+    assert region is not None
+    far = an_import("jura-south.osm.pbf", (JURA[0], JURA[1] - 0.15), half_deg=0.1)
+    assert far.region_id == region.pk
+    assert extent_of(region) == (7.2, 46.95, 7.4, 47.3)
+    client = client_of(a_user(Role.CURATOR))
+    client.post("/api/v1/regions/delete", {"import_id": far.pk}, content_type="application/json")
+    assert extent_of(region) == (7.2, 47.1, 7.4, 47.3)
+
+
+def test_a_region_is_as_large_as_before_once_an_import_into_it_is_undone(tmp_path: Path) -> None:
+    nodes, ways = small_line()
+    region = import_osm(path=write_osm(tmp_path / "line.osm", nodes, ways)).region
+    assert region is not None
+    before = Region.objects.get().extent.extent
+    nodes[5] = (9.019, 47.0, TOWER)
+    second = import_osm(path=write_osm(tmp_path / "line2.osm", nodes, ways))
+    assert second.region_id == region.pk
+    assert Region.objects.get().extent.extent[2] == pytest.approx(9.021)
+    with transaction.atomic():
+        write_undo(undo_of(second), actor=None)
+    assert Region.objects.get().extent.extent == before

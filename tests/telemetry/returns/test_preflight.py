@@ -288,3 +288,19 @@ def test_the_pilots_own_check_is_kept_with_the_starts(two: tuple[Mission, Uav, U
     answer = post(client_of(person), f"missions/{mission.pk}/planned-starts", {"pilot_checked": True})
     assert answer.status_code == 201, answer.content
     assert AuditEntry.objects.get(action="begin-starts").after["pilot_checked"] is True
+
+
+def test_a_uav_that_lacks_its_type_does_not_start_and_says_what_is_missing(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, tern, kite = two
+    received(tern, kite)
+    dispatch_mission(mission=mission, actor=person)
+    carry(tern, kite)
+    assert "incomplete" not in states(checks(mission), tern)
+    Uav.objects.filter(pk=tern.pk).update(uav_type=None)
+    found = checks(mission)
+    assert states(found, tern)["incomplete"] == CheckState.FAILED
+    assert "incomplete" not in states(found, kite)
+    assert {row.uav: row.blocks for row in found.uavs} == {tern.pk: True, kite.pk: False}
+    answer = begins(person, mission, tern)
+    assert answer.status_code == 409
+    assert "Tern is incomplete: it has no type. Choose one on its page." in answer.content.decode()
