@@ -56,6 +56,7 @@ class UavType(models.Model):
             models.CheckConstraint(condition=Q(max_airspeed_mps=None) | Q(max_airspeed_mps__gt=0), name="uav_type_airspeed_positive"),
             models.CheckConstraint(condition=Q(rotor_disk_m2=None) | Q(rotor_disk_m2__gt=0), name="uav_type_disk_positive"),
             models.CheckConstraint(condition=Q(hover_power_w=None) | Q(hover_power_w__gt=0), name="uav_type_hover_positive"),
+            models.CheckConstraint(condition=Q(range_unlimited=False) | Q(max_range_m=None), name="uav_type_range_or_unlimited"),
         ]
 
     def __str__(self) -> str:
