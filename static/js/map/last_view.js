@@ -1,4 +1,4 @@
-/** The view at which the user's maps open, stored in the account after the map was moved. */
+/** The view at which the user's maps open, stored in the account once the map rests after a move. */
 
 import { put } from "../api.js";
 import { copiedAt } from "../offline_copy.js";
@@ -28,7 +28,9 @@ export function storeLastView(map) {
   }
   map.on("moveend", (event) => {
     const isOfUser = "originalEvent" in event && event.originalEvent;
-    if (isOfUser || navigator.userActivation?.hasBeenActive) timer ??= setTimeout(store, STORE_AFTER_MS);
+    if (!isOfUser && !navigator.userActivation?.hasBeenActive) return;
+    clearTimeout(timer); // the map may follow a UAV: only where it comes to rest counts
+    timer = setTimeout(store, STORE_AFTER_MS);
   });
   addEventListener("pagehide", () => {
     if (timer) store();
