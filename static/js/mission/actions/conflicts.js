@@ -81,6 +81,7 @@ function createMeeting(context, saving) {
       await conflictWith(theirs, mission?.revision ?? 0, base);
       return;
     }
+    store.update({ restoredBasis: picks.basisOf(both.selection) }); // else each page that has it open plans it again
     history.rebase((step) => merged(base, { name: now.name, selection: step }, now).selection);
     store.update({ name: both.name });
     shownAs(theirs, stored, plan);

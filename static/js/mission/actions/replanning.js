@@ -34,12 +34,12 @@ export function isSmallChange(before, after) {
 }
 
 /** @param {MissionContext} context @param {() => Promise<void>} plan */
-export function replanSmallChanges({ store, history, page, selection }, plan) {
+export function replanSmallChanges({ store, history, page, selection, change }, plan) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let rest;
   /** @type {{ selection: MissionSelection, result: PlanResult } | null} the last plan that was of the selection */
   let planned = null;
-  /** @type {{ result: PlanResult, basis: string } | null} what is being planned again, against which plan */
+  /** @type {{ result: PlanResult, before: MissionSelection, basis: string } | null} what is being planned again, against which plan */
   let asked = null;
   let began_ms = 0;
   let took_ms = 0;
@@ -52,28 +52,33 @@ export function replanSmallChanges({ store, history, page, selection }, plan) {
     began_ms = 0;
   });
 
-  store.listen(["plan", "selection", "hand", "planning"], (state) => {
+  /** The selection of the plan before; later changes are taken back one by one. @param {MissionSelection} before @param {string} basis */
+  const takeBack = (before, basis) => (basisOf(selection()) === basis ? change(before) : history.undo());
+
+  store.listen(["plan", "selection", "hand", "planning", "isAway", "conflict"], (state) => {
     clearTimeout(rest);
     if (state.plan && isPlanCurrent(state)) {
-      if (asked?.basis === state.plan.basis && asked.result !== state.plan.result)
-        toast(t("Planned again: {difference}.", { difference: differenceWords(asked.result, state.plan.result) }), {
+      if (asked?.basis === state.plan.basis && asked.result !== state.plan.result) {
+        const { result, before, basis } = asked;
+        toast(t("Planned again: {difference}.", { difference: differenceWords(result, state.plan.result) }), {
           label: t("Undo"),
-          act: () => history.undo(),
+          act: () => takeBack(before, basis),
         });
+      }
       asked = null;
       planned = { selection: state.selection, result: state.plan.result };
       return;
     }
-    const isWanted =
-      page.canPlan && planned && state.plan && !state.hand && !state.planning && !state.isAway && took_ms < QUICK_MS;
+    const isFree = !state.hand && !state.planning && !state.isAway && !state.conflict;
+    const isWanted = page.canPlan && planned && state.plan && isFree && took_ms < QUICK_MS;
     const basis = basisOf(state.selection);
-    if (!isWanted || asked?.basis === basis || state.restoredBasis === basis) return; // refused or brought back: planned on request
+    if (!isWanted || asked?.basis === basis || state.restoredBasis === basis) return; // refused, brought back or merged: planned on request
     const isQuick = took_ms > 0 || state.selection.targets.length <= MAX_PLANNED_AT_ONCE;
     if (!isQuick || !planned) return;
     if (!isSmallChange(planned.selection, state.selection)) return;
-    const { result } = planned;
+    const { result, selection: before } = planned;
     rest = setTimeout(() => {
-      asked = { result, basis: basisOf(selection()) };
+      asked = { result, before, basis: basisOf(selection()) };
       void plan();
     }, REST_MS);
   });
