@@ -200,7 +200,6 @@ watchMission(store, {
 });
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
-store.listen(["planning"], ({ planning }) => planning && store.update({ tool: "point" })); // picking is over
 
 /**
  * The scene of the mission: the run of a rehearsal that is shown, else the stored plan.

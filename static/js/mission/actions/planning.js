@@ -31,7 +31,10 @@ export function createPlanning(context) {
   replanSmallChanges(context, plan);
 
   return {
-    plan,
+    plan() {
+      store.update({ tool: "point" }); // picking is over
+      return plan();
+    },
     resume,
     ...createStopping(context),
     waitForJob,
