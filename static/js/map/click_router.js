@@ -3,6 +3,7 @@
 import { h } from "../dom.js";
 import { swallowDrawnClick } from "./drawn_click.js";
 import { drawLassos } from "./lasso.js";
+import { isAt as isRegionAt } from "./layers/regions.js";
 import { PICKABLE, TILES } from "./look/voltages.js";
 
 /** @import { MapGeoJSONFeature } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
@@ -86,7 +87,9 @@ export function routeClicks(map, on) {
     );
   };
 
-  map.on("click", (event) => on.click(thingAt(event.point), [event.lngLat.lng, event.lngLat.lat], event.point));
+  map.on("click", ({ point, lngLat }) => {
+    if (!isRegionAt(map, point)) on.click(thingAt(point), [lngLat.lng, lngLat.lat], point);
+  });
 
   let frame = 0;
   map.on("mousemove", (event) => {

@@ -4,9 +4,13 @@ import { zoomOfRegion } from "../../domain/regions.js";
 import { countsText } from "../look/region_words.js";
 import { setFeatures } from "../look/style.js";
 
-/** @import { Box, MapLibreMap, Region } from "../types.d.ts" */
+/** @import { Box, MapLibreMap, Region, ScreenPoint } from "../types.d.ts" */
 
 const LAYERS = ["region-dots", "region-names"];
+
+/** Whether a region's dot or name is there: a click brings the region into view, and does nothing else. @param {MapLibreMap} map @param {ScreenPoint} point */
+export const isAt = (map, point) =>
+  map.queryRenderedFeatures([point.x, point.y], { layers: LAYERS.filter((id) => map.getLayer(id)) }).length > 0;
 
 /** @param {readonly Region[]} regions */
 export const featuresOf = (regions) =>
