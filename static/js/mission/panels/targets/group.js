@@ -34,6 +34,11 @@ export function createGroups(changed, most) {
       groups = new Map(found.map((group) => [group.key, group]));
       return withoutFolded(all, found, isFolded);
     },
+    /** The keys of the folded group whose head stands at a target; null where there is none. @param {PickedTarget} target */
+    foldedAt(target) {
+      const group = groups.get(target.key);
+      return group && isFolded(group) ? group.keys : null;
+    },
     /** @param {HTMLElement} row @param {PickedTarget} target */
     refresh(row, target) {
       const group = groups.get(target.key);

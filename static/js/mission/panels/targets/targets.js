@@ -61,7 +61,14 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       light: (isLit) => store.update({ litTarget: isLit ? target.key : null }),
       press: (event) => press(event, target),
       pressKey: (event, row) =>
-        pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt: (index) => shown.visible[index] }),
+        pressKey(event, row, target, {
+          store,
+          actions,
+          canPlan,
+          choosing,
+          groups,
+          keyAt: (index) => shown.visible[index],
+        }),
       toggle: () => choosing.toggle(target),
       chooseUpTo: () => choosing.upTo(target),
       openTask: (opener) => openTask(opener, target.key, store, actions),
@@ -177,19 +184,21 @@ function openTask(opener, key, store, actions) {
 }
 
 /**
- * Delete removes, arrows go from row to row, with Alt they move the target in its route.
+ * Delete removes, the head of a folded group all of its targets; arrows go from row to row, with Alt they move the target in its route.
  *
  * @param {KeyboardEvent} event
  * @param {HTMLElement} row
  * @param {PickedTarget} target
- * @param {{ store: MissionStore, actions: MissionActions, canPlan: boolean, choosing: Choosing, keyAt: (index: number) => string }} context
+ * @param {{ store: MissionStore, actions: MissionActions, canPlan: boolean, choosing: Choosing, groups: Pick<ReturnType<typeof createGroups>, "foldedAt">,
+ *   keyAt: (index: number) => string }} context
  */
-function pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt }) {
+function pressKey(event, row, target, { store, actions, canPlan, choosing, groups, keyAt }) {
   const at = /** @type {Element} */ (event.target);
   if (event.key === "Delete" && canPlan) {
     event.preventDefault();
     event.stopPropagation();
-    actions.removeTargets(choosing.isChosen(target) ? store.state.chosenTargets : [target.key]); // all that are chosen with it
+    const withIt = choosing.isChosen(target) ? store.state.chosenTargets : [target.key];
+    actions.removeTargets(groups.foldedAt(target) ?? withIt);
     return;
   }
   const isArrow = event.key === "ArrowDown" || event.key === "ArrowUp";
@@ -198,12 +207,13 @@ function pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt
     actions.shiftTarget(target.key, event.key === "ArrowDown" ? 1 : -1);
     return;
   }
-  const part = [".what", ".check"].find((name) => at.matches(name));
+  const part = [".what", ".check", ".group-head"].find((name) => at.matches(name));
   if (!isArrow || event.altKey || !part) return;
   const next = event.key === "ArrowDown" ? row.nextElementSibling : row.previousElementSibling;
   if (!next) return;
   event.preventDefault();
-  /** @type {HTMLElement | null} */ (next.querySelector(part))?.focus();
+  const partThere = next.matches(".folded") ? ".group-head" : part === ".group-head" ? ".what" : part;
+  /** @type {HTMLElement | null} */ (next.querySelector(partThere))?.focus();
   const key = keyAt([...(row.parentElement?.children ?? [])].indexOf(next));
   const reached = store.state.selection.targets.find((candidate) => candidate.key === key);
   if (event.shiftKey && canPlan && reached) choosing.upTo(reached, target);
