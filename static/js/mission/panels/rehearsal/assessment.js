@@ -19,7 +19,7 @@ import { conditionsTable, failuresList } from "./findings.js";
 
 /** @import { FindingsHow } from "./findings.js" */
 
-/** @typedef {Omit<FindingsHow, "store"> & { canRehearse: boolean, isStage: boolean, seeInSpace: () => unknown }} AssessmentHow */
+/** @typedef {Omit<FindingsHow, "store"> & { canRehearse: boolean, seeInSpace: () => unknown }} AssessmentHow */
 
 /** @param {MissionStore} store @param {Rehearsing} rehearsing @param {AssessmentHow} how */
 export function createAssessment(store, rehearsing, { canRehearse, isStage, seeInSpace, ...how }) {
@@ -81,7 +81,7 @@ export function createAssessment(store, rehearsing, { canRehearse, isStage, seeI
       ),
       ageNotice(detail),
       conditionsTable(detail, number, (sequence) => void rehearsing.chooseRun(sequence)),
-      run?.assessment && failuresList(detail, number, { ...how, store }),
+      run?.assessment && failuresList(detail, number, { ...how, isStage, store }),
       run?.is_reused && reusedNote(run, canRehearse && !detail.is_outdated && againButton(detail)),
       run?.assessment && [
         h("p", { class: "rehearsal-air" }, airWords(run.conditions)),

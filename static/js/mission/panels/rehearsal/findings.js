@@ -17,6 +17,7 @@ import { LEVELS, levelWords } from "../../rehearsal/rehearsal.js";
  * @property {MissionStore} store
  * @property {MissionActions} actions
  * @property {boolean} canPlan the plan may be changed
+ * @property {boolean} isStage the page shows only the rehearsal
  * @property {(positions: number[][]) => void} showPlaces on the map
  */
 
@@ -147,17 +148,18 @@ function failure({ level, message }, fix, places, how) {
 
 /** Where it happened: at the waypoint, else at the target. @param {Finding} finding @param {FindingsHow} how */
 function placesOf({ uav, waypoint, target }, { store }) {
-  const { plan, selection } = store.state;
+  const { plan } = store.state;
   const point = waypoint === null ? undefined : plan?.result.routes[uav]?.waypoints[waypoint]?.position;
-  const centre = target === null ? undefined : selection.targets[target]?.centre;
+  const centre = target === null ? undefined : plan?.targets[target]?.centre;
   const place = point ?? centre;
   return place ? [place] : [];
 }
 
 /** @param {Fix} fix @param {FindingsHow} how */
-function planAgain(fix, { store, actions }) {
+function planAgain(fix, { store, actions, isStage }) {
   if (fix.code === "by_hand") {
-    location.assign(`/missions/${store.state.mission?.id}`);
+    if (isStage) location.assign(`/missions/${store.state.mission?.id}`);
+    else void actions.beginManually(fix.uav);
     return;
   }
   if (fix.code === "reserve") actions.changeUav(fix.uav, { reserve_percent: fix.percent });

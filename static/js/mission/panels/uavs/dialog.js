@@ -82,7 +82,9 @@ export function newDialog({ uav, submit, ...how }) {
       type.append(...types.map((row) => h("option", { value: row.id }, row.name)));
       noTypes.hidden = types.length > 0;
     },
-    () => {}, // it is added without one
+    () => {
+      type.required = false; // it is added without one
+    },
   );
 }
 
