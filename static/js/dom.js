@@ -103,7 +103,28 @@ export function setChildren(element, ...children) {
 }
 
 /**
- * Replace the children of an element only if they differ: otherwise pointer and focus stay on the present ones.
+ * Focus the control that takes the place of the focused one when an element is drawn anew: of the same words, else the one at its place.
+ *
+ * @param {Element} element
+ * @param {() => unknown} draw
+ */
+export function keepingFocus(element, draw) {
+  const controls = () =>
+    /** @type {HTMLElement[]} */ ([...element.querySelectorAll("a[href], button, input, select, summary, [tabindex]")]);
+  const focused = globalThis.document?.activeElement;
+  const before = focused && element.contains(focused) ? controls() : [];
+  const place = before.indexOf(/** @type {HTMLElement} */ (focused));
+  const words = before[place]?.textContent;
+  draw();
+  if (place < 0 || element.contains(focused)) return;
+  const now = controls();
+  const same = now[place]?.textContent === words ? now[place] : now.find((one) => one.textContent === words);
+  (same ?? now[place])?.focus({ preventScroll: true });
+}
+
+/**
+ * Replace the children of an element only if they differ: otherwise pointer and focus stay on the present ones. Focus moves to the control
+ * that takes the place of the focused one.
  *
  * @param {HTMLElement | SVGElement} element
  * @param {string} key is equal as long as the children are
@@ -112,7 +133,7 @@ export function setChildren(element, ...children) {
 export function refill(element, key, make) {
   if (element.dataset.filled === key) return;
   element.dataset.filled = key;
-  element.replaceChildren(...shown([make()]).filter((child) => child !== ""));
+  keepingFocus(element, () => element.replaceChildren(...shown([make()]).filter((child) => child !== "")));
 }
 
 /**

@@ -2,6 +2,7 @@
 
 import { h } from "../../dom.js";
 import { t, tn } from "../../text.js";
+import { numberText } from "../../units.js";
 import { caughtWords, groupsOf, rowsWithout } from "../caught.js";
 import { MAX_TARGETS } from "../selection.js";
 
@@ -23,16 +24,15 @@ export function mountCaught(frame, store, actions) {
   const why = h("p", { class: "caption", role: "status" });
   const add = h("button", { type: "submit", class: "button primary" });
   const cancel = h("button", { type: "button", class: "button", onclick: actions.dropCaught }, t("Cancel"));
+  /** @type {Element | null} */
+  let opener = null;
+  const form = h("form", {}, title, covered, groups, why, h("div", { class: "caught-acts" }, add, cancel));
   const panel = h(
-    "form",
+    "div",
     { class: "caught float", role: "dialog", "aria-labelledby": "caught-title", hidden: true },
-    title,
-    covered,
-    groups,
-    why,
-    h("div", { class: "caught-acts" }, add, cancel),
+    form,
   );
-  panel.addEventListener("submit", (event) => {
+  form.addEventListener("submit", (event) => {
     event.preventDefault();
     actions.addCaught();
   });
@@ -52,11 +52,15 @@ export function mountCaught(frame, store, actions) {
       const { caught } = store.state;
       if (caught) store.update({ caught: { ...caught, chosen: rowsWithout(caught.rows, off) } });
     });
-    return h("label", {}, box, h("span", {}, words), h("span", { class: "caption" }, `${count}`));
+    return h("label", {}, box, h("span", {}, words), h("span", { class: "caption" }, numberText(count)));
   };
 
   store.listen(["caught", "selection"], ({ caught, selection }) => {
+    const isOpened = caught !== null && panel.hidden;
+    const isLeft = caught === null && panel.contains(document.activeElement);
+    if (isOpened) opener = document.activeElement;
     panel.hidden = caught === null;
+    if (isLeft) focusAgain(opener, frame);
     if (caught && caught.rows !== shown) {
       off = new Set();
       groups.replaceChildren(
@@ -74,9 +78,16 @@ export function mountCaught(frame, store, actions) {
     title.textContent = caughtWords(caught.rows);
     add.textContent = tn(count, "Add {count} target", "Add {count} targets");
     add.disabled = count === 0 || count > room;
-    why.textContent = count > room ? t("A mission takes {most} targets.", { most: MAX_TARGETS }) : "";
+    why.textContent = count > room ? t("A mission takes {most} targets.", { most: numberText(MAX_TARGETS) }) : "";
     if (isNew) (add.disabled ? cancel : add).focus({ preventScroll: true });
   });
+}
+
+/** Where the focus was, else the map. @param {Element | null} opener @param {HTMLElement} frame */
+function focusAgain(opener, frame) {
+  const isThere = opener instanceof HTMLElement && opener !== document.body && opener.isConnected;
+  const place = isThere ? opener : frame.querySelector("canvas");
+  /** @type {HTMLElement | null} */ (place)?.focus({ preventScroll: true });
 }
 
 /** @param {number} count */

@@ -1,6 +1,6 @@
 /** An approved mission: its stage, the onboard list and commands of each UAV, and the link to the page on which it is flown. */
 
-import { byId, h, icon } from "../../dom.js";
+import { byId, h, icon, keepingFocus } from "../../dom.js";
 import {
   boardOf,
   boardWords,
@@ -66,10 +66,8 @@ function draw({ mission, commands, isDispatching, preflight }, context) {
     ),
   );
   const list = byId("flyers");
-  const buttons = () => [...list.querySelectorAll("button")];
-  const focused = buttons().indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
-  list.replaceChildren(...flyersOf(mission).map((flyer) => flyerRow(flyer, mission, commands, context)));
-  if (focused >= 0) buttons()[focused]?.focus({ preventScroll: true });
+  const rows = flyersOf(mission).map((flyer) => flyerRow(flyer, mission, commands, context));
+  keepingFocus(list, () => list.replaceChildren(...rows));
   byId("commands").hidden = known.length === 0;
   byId("command-count").textContent = `${known.length}`;
   byId("command-list").replaceChildren(...known.map(commandRow));

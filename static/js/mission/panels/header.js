@@ -2,7 +2,7 @@
 
 import { openAlertLimits } from "../../alert_limits/dialog.js";
 import { ApiError } from "../../api.js";
-import { byId, h, icon, setChildren } from "../../dom.js";
+import { byId, h, icon, refill } from "../../dom.js";
 import { groundCauses } from "../../domain/flying.js";
 import { plannedChip, REHEARSAL_FAILED } from "../../domain/planned_state.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
@@ -17,9 +17,10 @@ import { factsOf } from "../head_facts.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 import { proposedName } from "../proposed_name.js";
 import { unreachedCards } from "../unreached/cards.js";
+import { causesOf } from "../unreached/causes.js";
 import { showHistory } from "./history.js";
 import { showLegalTimes } from "./options/legal_times.js";
-import { uavNotice } from "./uavs/changes.js";
+import { shownChanges, uavNotice } from "./uavs/changes.js";
 
 /** @import { Mission } from "../../api_types.d.ts" */
 /** @import { Child } from "../../dom.js" */
@@ -117,8 +118,9 @@ export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showP
     addUavAt,
     lookForDeparture: () => showLegalTimes(store, actions),
   };
+  const keyOfNotices = createNoticesKey(canPlan);
   store.listen(["problem", "conflict", "plan", "planIsStored", "selection", "mission", "isAway"], (state) =>
-    setChildren(byId("notices"), noticesOf(state, context)),
+    refill(byId("notices"), keyOfNotices(state), () => noticesOf(state, context)),
   );
   store.listen(["problem", "conflict"], (state) => {
     if (state.problem || state.conflict) byId("notices").parentElement?.scrollTo({ top: 0 }); // shown above a long list
@@ -206,18 +208,41 @@ function wayOut({ label, act, href }) {
 /** @param {MissionPageState} state @param {NoticeContext} context @returns {Child[]} */
 function noticesOf(state, context) {
   const { actions, canPlan, showPlace } = context;
-  const { mission } = state;
+  const stale = staleOf(state);
   return [
     problemNotice(state, canPlan),
     state.conflict && isUnsaved(state) && conflictNotice(state.conflict, actions),
     uavNotice(state, actions, canPlan),
-    mission &&
-      groundCauses(mission).length > 0 &&
-      state.planIsStored &&
-      isPlanCurrent(state) &&
-      staleNotice(mission, actions, { canPlan, showPlace }),
+    stale && staleNotice(stale, actions, { canPlan, showPlace }),
     isPlanCurrent(state) && planNotices(state, context),
   ];
+}
+
+/** The mission, where the map data have changed since its plan was made. @param {MissionPageState} state */
+const staleOf = (state) =>
+  state.mission && groundCauses(state.mission).length > 0 && state.planIsStored && isPlanCurrent(state)
+    ? state.mission
+    : null;
+
+/** Is equal as long as the notices are: each autosave makes another mission of the same content. @param {boolean} canPlan */
+function createNoticesKey(canPlan) {
+  /** @type {MissionPageState["problem"]} */
+  let problem = null;
+  let problems = 0;
+  /** @param {MissionPageState} state */
+  return (state) => {
+    if (state.problem !== problem) problems += 1;
+    problem = state.problem;
+    const { conflict, isAway, mission, plan } = state;
+    const changes = shownChanges(state);
+    return JSON.stringify([
+      [problems, isAway, canPlan],
+      isUnsaved(state) && conflict,
+      changes.length > 0 && [changes, mission?.state, isPlanCurrent(state)],
+      staleOf(state) && [mission?.stale_reason, mission?.stale_causes],
+      isPlanCurrent(state) && [plan?.result.warnings, causesOf(plan)],
+    ]);
+  };
 }
 
 /** The present problem, or that the server is unavailable. @param {MissionPageState} state @param {boolean} canPlan */
