@@ -2,11 +2,10 @@
 
 import { proved } from "../account/reauthentication.js";
 import { ApiError, get, post, remove } from "../api.js";
-import { find, h, icon } from "../dom.js";
+import { find, h, icon, svg } from "../dom.js";
 import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
-import { qrCode } from "./qr_code.js";
 import { CREDENTIALS } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
@@ -16,6 +15,7 @@ import { CREDENTIALS } from "./words.js";
 
 /** @typedef {{ kind: CredentialKind, secret: string, qr: string[] }} Shown a secret that was just made */
 
+const QUIET = 4; // modules around a QR code, by ISO/IEC 18004
 const KINDS = /** @type {CredentialKind[]} */ (Object.keys(CREDENTIALS));
 const SECRET_WORDS = {
   "link-token": t("This is the token. It is shown only now: put it into the UAV's program."),
@@ -286,4 +286,23 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
   }
 
   await draw();
+}
+
+/**
+ * A QR code as a drawing.
+ *
+ * @param {readonly string[]} rows of modules, "1" is dark
+ * @param {string} label
+ */
+export function qrCode(rows, label) {
+  const size = rows.length + 2 * QUIET;
+  const path = rows.flatMap((row, y) =>
+    [...row].flatMap((dark, x) => (dark === "1" ? [`M${x + QUIET} ${y + QUIET}h1v1h-1z`] : [])),
+  );
+  return svg(
+    "svg",
+    { class: "qr-code", viewBox: `0 0 ${size} ${size}`, role: "img", "aria-label": label },
+    svg("rect", { width: size, height: size, class: "light" }),
+    svg("path", { d: path.join(""), class: "dark" }),
+  );
 }

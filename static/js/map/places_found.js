@@ -139,3 +139,22 @@ export function goTo(map, place, fit) {
   const zoom = Math.max(map.getZoom(), place.zoom ?? 0);
   map.easeTo({ center: [longitude, latitude], zoom, duration: calm ? 0 : 350 });
 }
+
+/**
+ * Results that are called alike are told apart by where they are.
+ *
+ * @template {{ words: string, detail: string, centre?: number[] | null }} Result
+ * @param {Result[]} results
+ * @returns {Result[]}
+ */
+export function toldApart(results) {
+  /** @param {Result} result */
+  const nameOf = ({ words, detail }) => JSON.stringify([words, detail]);
+  /** @type {Map<string, number>} */
+  const counts = new Map();
+  for (const result of results) counts.set(nameOf(result), (counts.get(nameOf(result)) ?? 0) + 1);
+  return results.map((result) => {
+    if (!result.centre || (counts.get(nameOf(result)) ?? 0) < 2) return result;
+    return { ...result, detail: [result.detail, coordinateText(result.centre)].filter(Boolean).join(" · ") };
+  });
+}

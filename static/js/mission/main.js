@@ -1,7 +1,7 @@
 /** The operator's map: composes the page and loads its data. */
 
 import { ApiError, get } from "../api.js";
-import { byId } from "../dom.js";
+import { byId, h } from "../dom.js";
 import { readBriefing } from "../offline/briefing.js";
 import { copiedAt } from "../offline_copy.js";
 import { readPage, startChrome } from "../page/chrome.js";
@@ -14,11 +14,8 @@ import { t } from "../text.js";
 import { createActions } from "./actions/actions.js";
 import { createDrafts } from "./actions/draft.js";
 import { watchMission } from "./actions/together.js";
-import { standingUavs } from "./fleet.js";
 import { createFlying } from "./flying/flying_actions.js";
-import { lockOf } from "./locks.js";
 import { mountMap } from "./map/map_panel.js";
-import { uavOf } from "./mission_uavs.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFlying } from "./panels/flying.js";
 import { mountFoot } from "./panels/foot.js";
@@ -38,16 +35,25 @@ import { mountTools } from "./panels/tools.js";
 import { mountEndings } from "./panels/uavs/endings.js";
 import { mountUavs } from "./panels/uavs/uavs.js";
 import { mountWhy } from "./panels/why/why.js";
-import { isUnsaved } from "./plan_view.js";
+import { isUnsaved } from "./plan/plan_view.js";
 import { createRehearsing, NOTHING as NO_REHEARSAL } from "./rehearsal/rehearsal_actions.js";
 import { EMPTY } from "./selection.js";
-import { mountStages } from "./stages.js";
 import { createGrounds } from "./strips/profile.js";
+import { lockOf } from "./targets/locks.js";
+import { standingUavs } from "./uavs/fleet.js";
+import { uavOf } from "./uavs/mission_uavs.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { AssetFeature, Ground, UavCollection } from "../api_types.d.ts" */
 /** @import { MissionPageData, MissionPageState, MissionStore, Tool } from "./types.d.ts" */
 
+const STAGES = [
+  ["", t("Plan")],
+  ["/rehearse", t("Rehearse")],
+  ["/fly", t("Fly")],
+  ["/report", t("Report")],
+  ["/3d", "3D"],
+];
 /** @type {MissionPageData} */
 const page = readPage();
 const isStage = page.stage === "rehearse";
@@ -117,7 +123,7 @@ const showPlaces = (positions) => {
   layout.showMap();
   map.showPlaces(positions);
 };
-mountStages(store);
+showStages();
 mountHeader(store, actions, page.canPlan, {
   canCopy: page.canFly,
   canCurate: page.canCurate,
@@ -200,6 +206,18 @@ watchMission(store, {
 });
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
+
+/** Show the stages of the mission once one that was begun on this page is stored. */
+function showStages() {
+  if (document.querySelector(".stages")) return; // the page was made with them
+  store.listen(["mission"], ({ mission }) => {
+    if (!mission || document.querySelector(".stages")) return;
+    const links = STAGES.map(([rest, words]) =>
+      h("a", { href: `/missions/${mission.id}${rest}`, "aria-current": rest ? null : "page" }, words),
+    );
+    byId("others").after(h("nav", { class: "page-tabs stages", "aria-label": t("Stages of the mission") }, links));
+  });
+}
 
 /**
  * The scene of the mission: the run of a rehearsal that is shown, else the stored plan.

@@ -2,7 +2,7 @@
 
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
-import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./flight_options.js";
+import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./options/flight_options.js";
 
 /** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Task, Wishes } from "./types.d.ts" */
 /** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, TaskOutput, UavInputRequest } from "../api_types.d.ts" */

@@ -107,11 +107,11 @@ def test_return_all_on_the_page_of_a_mission_reaches_that_mission_alone(visitor:
     page.get_by_role("button", name="Return all").click()
     question = page.get_by_role("dialog", name="Return all 2 UAVs?")
     expect(question).to_contain_text(re.compile("Tern, Kite|Kite, Tern"))
-    expect(question).to_contain_text("What the companion of")
+    expect(question).to_contain_text("Return path of Tern unknown: its companion computer decides. Nothing on it is checked.")
     with page.expect_request(lambda request: request.method == "POST") as sent:
         question.get_by_role("button", name="Return: 2").click()
     assert sent.value.url.endswith(f"/missions/{south}/commands")
-    expect(page.locator(".toast")).to_contain_text("2 UAVs are being told.")
+    expect(page.locator(".toast")).to_contain_text("Sending to 2 UAVs.")
     assert reported(of_south) == [["return"], ["return"]]
     assert reported(of_north) == [[], []]
 
@@ -132,7 +132,7 @@ def test_live_asks_of_which_mission_with_nothing_chosen(visitor: Visitor, two: d
     assert faults(page) == []
     question.get_by_role("radio", name=re.compile("^North")).check()
     question.get_by_role("button", name="Return all").click()
-    expect(page.locator(".toast")).to_contain_text("2 UAVs are being told.")
+    expect(page.locator(".toast")).to_contain_text("Sending to 2 UAVs.")
     assert reported(of_south) == [[], []]
     assert reported(of_north) == [["return"], ["return"]]
 

@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { placesFound } from "../../../static/js/map/places_found.js";
-import { toldApart } from "../../../static/js/map/told_apart.js";
+import { placesFound, toldApart } from "../../../static/js/map/places_found.js";
 
 test("bridges that are called alike are told apart by where they are", () => {
   const bridge = (words, centre) => ({ words, detail: "carries a road", centre });

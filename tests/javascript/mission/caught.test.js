@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { caughtWords, groupsOf, notPickedYet, rowsWithout } from "../../../static/js/mission/caught.js";
 import { targetOf, targetOfRow } from "../../../static/js/mission/selection.js";
+import { caughtWords, groupsOf, notPickedYet, rowsWithout } from "../../../static/js/mission/targets/caught.js";
 
 const tower = (id, line, voltage_v = 138_000) => ({
   id,

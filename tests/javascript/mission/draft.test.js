@@ -3,9 +3,9 @@ import test from "node:test";
 
 import { isSignedOut, signInAddress } from "../../../static/js/api.js";
 import { createDrafts, draftDecision, isStarted, whoseSave } from "../../../static/js/mission/actions/draft.js";
-import { factsOfUav } from "../../../static/js/mission/fleet.js";
-import { withUav, withUavAs } from "../../../static/js/mission/mission_uavs.js";
 import { basisOf, EMPTY, targetOf, withTargets } from "../../../static/js/mission/selection.js";
+import { factsOfUav } from "../../../static/js/mission/uavs/fleet.js";
+import { withUav, withUavAs } from "../../../static/js/mission/uavs/mission_uavs.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "18" }, centre: [10, 50] });
 const bridge = targetOf({ id: 8, kind: "bridge", properties: { label: "I 270" }, centre: [10, 50] });

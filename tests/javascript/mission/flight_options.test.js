@@ -9,7 +9,7 @@ import {
   flightOptionsAsked,
   nextMinute,
   timeAt,
-} from "../../../static/js/mission/flight_options.js";
+} from "../../../static/js/mission/options/flight_options.js";
 import { basisOf, EMPTY, requestOf, selectionOf } from "../../../static/js/mission/selection.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { lineGroups, withoutFolded } from "../../../static/js/mission/line_groups.js";
+import { lineGroups, withoutFolded } from "../../../static/js/mission/panels/targets/group.js";
 
 const on = (line, count, first = 0) =>
   Array.from({ length: count }, (_, at) => ({

@@ -1,6 +1,13 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import {
+  EMPTY,
+  requestOf,
+  selectionOf,
+  targetOf,
+  withoutLocks,
+  withoutTargets,
+} from "../../../static/js/mission/selection.js";
 import {
   areContrary,
   flownBy,
@@ -15,16 +22,8 @@ import {
   unlocked,
   wishedOrders,
   wishedPlace,
-} from "../../../static/js/mission/locks.js";
-import { withoutUavAt } from "../../../static/js/mission/mission_uavs.js";
-import {
-  EMPTY,
-  requestOf,
-  selectionOf,
-  targetOf,
-  withoutLocks,
-  withoutTargets,
-} from "../../../static/js/mission/selection.js";
+} from "../../../static/js/mission/targets/locks.js";
+import { withoutUavAt } from "../../../static/js/mission/uavs/mission_uavs.js";
 
 const tower = (id) => ({
   ...targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] }),

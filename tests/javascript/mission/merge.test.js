@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { isAlike, merged, wordsOfChange } from "../../../static/js/mission/actions/merge.js";
-import { tied } from "../../../static/js/mission/locks.js";
 import { EMPTY, targetOf } from "../../../static/js/mission/selection.js";
+import { tied } from "../../../static/js/mission/targets/locks.js";
 
 const tower = (id, task = null) =>
   targetOf({ id, kind: "tower", properties: { label: String(id) }, centre: [10, 50], task });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { isSavedOnRequest, lackingOf, nextAct, whyNotApproved } from "../../../static/js/mission/next_act.js";
+import { isSavedOnRequest, lackingOf, nextAct, whyNotApproved } from "../../../static/js/mission/flying/next_act.js";
 import { basisOf, EMPTY, placeTarget, requestOf, targetOf } from "../../../static/js/mission/selection.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "E401-7" }, centre: [9, 50] });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { baseView } from "../../../static/js/mission/map/base_view.js";
-import { proposedName } from "../../../static/js/mission/proposed_name.js";
+import { proposedName } from "../../../static/js/mission/targets/proposed_name.js";
 
 const tower = (label, detail = "138 kV AEP") => ({ kind: "tower", label, detail });
 

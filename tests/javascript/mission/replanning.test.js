@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { isSmallChange, replanSmallChanges } from "../../../static/js/mission/actions/replanning.js";
-import { differenceWords } from "../../../static/js/mission/compare.js";
+import { differenceWords } from "../../../static/js/mission/plan/compare.js";
 import { basisOf, EMPTY, targetOf } from "../../../static/js/mission/selection.js";
 import { createHistory, createStore } from "../../../static/js/store.js";
 

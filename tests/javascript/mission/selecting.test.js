@@ -3,7 +3,6 @@ import test from "node:test";
 
 import { isWide } from "../../../static/js/map/lasso.js";
 import { partOfLine } from "../../../static/js/map/line_part.js";
-import { listIn, refsIn, rowsToAdd } from "../../../static/js/mission/list_reading.js";
 import {
   EMPTY,
   isUsualTask,
@@ -16,6 +15,7 @@ import {
   withTargets,
   withTask,
 } from "../../../static/js/mission/selection.js";
+import { listIn, refsIn, rowsToAdd } from "../../../static/js/mission/targets/list_reading.js";
 import { createHistory, createStore } from "../../../static/js/store.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "T 7" }, centre: [10, 50] });

@@ -1,6 +1,5 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { withUav, withUavAt } from "../../../static/js/mission/mission_uavs.js";
 import {
   basisOf,
   detailOf,
@@ -13,6 +12,7 @@ import {
   withoutTargets,
   withTargets,
 } from "../../../static/js/mission/selection.js";
+import { withUav, withUavAt } from "../../../static/js/mission/uavs/mission_uavs.js";
 
 const tower = targetOf({
   id: 7,

@@ -1,15 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
-import { factsOfUav } from "../../../static/js/mission/fleet.js";
 import { basisOf, EMPTY, requestOf, storedBasisOf } from "../../../static/js/mission/selection.js";
+import { factsOfUav } from "../../../static/js/mission/uavs/fleet.js";
 import {
   changeWords,
   figuresInMission,
   openChanges,
   withFleetFigures,
   withPresentFigures,
-} from "../../../static/js/mission/uav_changes.js";
+} from "../../../static/js/mission/uavs/uav_changes.js";
 
 const kite = {
   id: 7,

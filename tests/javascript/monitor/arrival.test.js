@@ -4,7 +4,7 @@ import { test } from "node:test";
 globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
 const { hasArrived, isNone } = await import("../../../static/js/monitor/arrival.js");
-const { factsOf } = await import("../../../static/js/mission/head_facts.js");
+const { factsOf } = await import("../../../static/js/mission/plan/head_facts.js");
 
 test("a list is not called empty before it has arrived", () => {
   assert.equal(isNone({ isWhole: false }, []), false);

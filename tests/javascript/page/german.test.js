@@ -7,7 +7,7 @@ globalThis.document = {
   cookie: "",
   querySelector: () => ({ getAttribute: () => catalogue }),
 };
-const { changeWords } = await import("../../../static/js/mission/uav_changes.js");
+const { changeWords } = await import("../../../static/js/mission/uavs/uav_changes.js");
 
 test("what has changed of a UAV is told in German", () => {
   assert.equal(

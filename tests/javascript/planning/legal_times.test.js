@@ -14,7 +14,7 @@ const {
   ticksOf,
   wordsOf,
   marginText,
-} = await import("../../../static/js/mission/legal_times.js");
+} = await import("../../../static/js/mission/options/legal_times.js");
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const at = (text) => Date.parse(`2026-11-${text}Z`);

@@ -2,8 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { merged } from "../../../static/js/mission/actions/merge.js";
 import { changedParts } from "../../../static/js/mission/actions/save_request.js";
-import * as link from "../../../static/js/mission/lost_link.js";
 import { questionOf } from "../../../static/js/mission/map/reachable.js";
+import * as link from "../../../static/js/mission/options/lost_link.js";
 import { basisOf, EMPTY, requestOf, selectionOf, storedBasisOf } from "../../../static/js/mission/selection.js";
 
 const YARD = [-82.95, 39.95];

@@ -4,9 +4,8 @@ import { isAlike, merged, wordsOfChange } from "../../../static/js/mission/actio
 import { planOf } from "../../../static/js/mission/actions/plan_results.js";
 import { createRunningJob } from "../../../static/js/mission/actions/running_job.js";
 import { changedParts } from "../../../static/js/mission/actions/save_request.js";
-import { factsOfUav } from "../../../static/js/mission/fleet.js";
-import { bestWordsOf, qualityOf, wishWordsOf } from "../../../static/js/mission/plan_quality.js";
-import { endingOf, isPlanInSight, placesOf, shownPlaces } from "../../../static/js/mission/plan_view.js";
+import { bestWordsOf, qualityOf, wishWordsOf } from "../../../static/js/mission/plan/plan_quality.js";
+import { endingOf, isPlanInSight, placesOf, shownPlaces } from "../../../static/js/mission/plan/plan_view.js";
 import {
   EMPTY,
   requestOf,
@@ -16,6 +15,7 @@ import {
   withWishes,
 } from "../../../static/js/mission/selection.js";
 import { placePills } from "../../../static/js/mission/strips/span_strip.js";
+import { factsOfUav } from "../../../static/js/mission/uavs/fleet.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const flown = { geometry: {}, uav: "Heron", targets: [0, 1] };

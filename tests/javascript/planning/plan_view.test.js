@@ -12,8 +12,8 @@ import {
   pointAlong,
   sentenceOf,
   shownRoute,
-  unreachedOf,
-} from "../../../static/js/mission/plan_view.js";
+  unassignedOf,
+} from "../../../static/js/mission/plan/plan_view.js";
 import { basisOf, EMPTY, targetOf, withTargets } from "../../../static/js/mission/selection.js";
 
 const target = (id) => targetOf({ id, kind: "tower", properties: { label: `Tower ${id}` }, centre: [id, 50] });
@@ -82,7 +82,7 @@ test("the switch says what happens without it", () => {
 });
 
 test("what is not reached is told with the server's reason", () => {
-  const [{ target: missed, sentence }] = unreachedOf(plan);
+  const [{ target: missed, sentence }] = unassignedOf(plan);
   assert.equal(missed.label, "Tower 2");
   assert.equal(sentence, "It stands inside Alum Creek reserve.");
 });

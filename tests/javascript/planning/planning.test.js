@@ -1,6 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { withResult } from "../../../static/js/mission/actions/plan_results.js";
+import { partsOf } from "../../../static/js/mission/panels/why/route.js";
+import { fullUavs, reasonWords } from "../../../static/js/mission/panels/why/target.js";
 import {
   counterpart,
   endsBetween,
@@ -9,10 +11,7 @@ import {
   movesBetween,
   profileOfSummary,
   summaryOfPlan,
-} from "../../../static/js/mission/compare.js";
-import { canFly, choicesOf, isAskedFor, standingUavs } from "../../../static/js/mission/fleet.js";
-import { partsOf } from "../../../static/js/mission/panels/why/route.js";
-import { fullUavs, reasonWords } from "../../../static/js/mission/panels/why/target.js";
+} from "../../../static/js/mission/plan/compare.js";
 import {
   bandOf,
   flightOf,
@@ -23,6 +22,7 @@ import {
   thinned,
 } from "../../../static/js/mission/strips/profile.js";
 import { scaleOf } from "../../../static/js/mission/strips/span_strip.js";
+import { canFly, choicesOf, isAskedFor, standingUavs } from "../../../static/js/mission/uavs/fleet.js";
 import { lengthText } from "../../../static/js/units.js";
 
 const at = (lon, more = {}) => ({

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { whyNotRehearsed } from "../../../static/js/mission/next_act.js";
+import { whyNotRehearsed } from "../../../static/js/mission/flying/next_act.js";
 import {
   curvesOf,
   figuresOf,

@@ -9,7 +9,7 @@ import {
   staysOf,
   staysText,
   visitsOf,
-} from "../../../static/js/mission/route_times.js";
+} from "../../../static/js/mission/plan/route_times.js";
 import { flightOf, readingAt } from "../../../static/js/mission/strips/profile.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { marginWords, passedZones, zoneLegend, zoneWords } from "../../../static/js/mission/zones_passed.js";
+import { marginWords, passedZones, zoneLegend, zoneWords } from "../../../static/js/mission/options/zones_passed.js";
 
 const at = (altitude_agl_m) => ({
   position: [10, 50],

@@ -3,9 +3,9 @@
 import { ApiError, signInAddress } from "../../api.js";
 import { t } from "../../text.js";
 import { createManualEditing } from "../hand/manual_editing.js";
-import { settled } from "../locks.js";
 import { showBoth } from "../panels/both.js";
 import { basisOf } from "../selection.js";
+import { settled } from "../targets/locks.js";
 import { createConflicts } from "./conflicts.js";
 import { createFleetActions } from "./fleet_actions.js";
 import { createLocking } from "./locking.js";

@@ -7,7 +7,7 @@ import { isFrozen } from "../../domain/flying.js";
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { clockText } from "../../units.js";
-import { isUnsaved } from "../plan_view.js";
+import { isUnsaved } from "../plan/plan_view.js";
 import * as picks from "../selection.js";
 import { whoseSave } from "./draft.js";
 import { isAlike, merged, wordsOfChange } from "./merge.js";

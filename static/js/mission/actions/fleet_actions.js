@@ -3,8 +3,8 @@
 import { post } from "../../api.js";
 import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
-import { uavOf, withoutUavAt, withUav, withUavAs, withUavAt } from "../mission_uavs.js";
-import { openChanges, withFleetFigures, withPresentFigures } from "../uav_changes.js";
+import { uavOf, withoutUavAt, withUav, withUavAs, withUavAt } from "../uavs/mission_uavs.js";
+import { openChanges, withFleetFigures, withPresentFigures } from "../uavs/uav_changes.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { UavFeature, UavWriteRequest } from "../../api_types.d.ts" */

@@ -2,8 +2,8 @@
 
 import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
-import * as locks from "../locks.js";
 import { withoutLocks } from "../selection.js";
+import * as locks from "../targets/locks.js";
 
 /** @import { MissionContext, MissionSelection } from "../types.d.ts" */
 

@@ -1,9 +1,9 @@
 /** Merge of two users' changes of one mission, part by part. Values in, values out. */
 
 import { t, tn } from "../../text.js";
-import { flightOptionsOf } from "../flight_options.js";
-import { areContrary, settled } from "../locks.js";
+import { flightOptionsOf } from "../options/flight_options.js";
 import { PERFORMANCE, wishesOf } from "../selection.js";
+import { areContrary, settled } from "../targets/locks.js";
 
 /** @import { Lock, MissionSelection, PickedTarget, PickedUav, Version } from "../types.d.ts" */
 

@@ -3,8 +3,8 @@
 import { get, post } from "../../api.js";
 import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
-import { notPickedYet } from "../caught.js";
 import * as picks from "../selection.js";
+import { notPickedYet } from "../targets/caught.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { BridgesOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */

@@ -3,7 +3,7 @@
 import { get, remove } from "../../api.js";
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { isUnsaved } from "../plan_view.js";
+import { isUnsaved } from "../plan/plan_view.js";
 import * as picks from "../selection.js";
 import { draftDecision, isStarted } from "./draft.js";
 import { merged } from "./merge.js";

@@ -3,7 +3,7 @@
 import { follow, get, isAbort, post } from "../../api.js";
 import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { isWithoutCapacity, OBJECTIVES, otherObjective } from "../plan_view.js";
+import { isWithoutCapacity, OBJECTIVES, otherObjective } from "../plan/plan_view.js";
 import * as picks from "../selection.js";
 import { withResult } from "./plan_results.js";
 

@@ -4,10 +4,10 @@ import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
 import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
-import { isSamePlan, isWorse, summaryOfPlan } from "../compare.js";
-import { lackingOf } from "../next_act.js";
-import { qualityOf, wishWordsOf } from "../plan_quality.js";
-import { figuresOf, isPlanCurrent, sentenceOf, unreachedOf } from "../plan_view.js";
+import { lackingOf } from "../flying/next_act.js";
+import { isSamePlan, isWorse, summaryOfPlan } from "../plan/compare.js";
+import { qualityOf, wishWordsOf } from "../plan/plan_quality.js";
+import { figuresOf, isPlanCurrent, sentenceOf, unassignedOf } from "../plan/plan_view.js";
 import * as picks from "../selection.js";
 import { cancelJob, createPlanBeside, MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
 import { planOf, withResult } from "./plan_results.js";
@@ -216,7 +216,7 @@ function createShowing({ store, selection, problem }, aside, planAgain) {
 /** A new plan for those who do not see it. @param {ShownPlan} made */
 function wordsOf(made) {
   const { sentence, facts } = sentenceOf(made);
-  const unreached = unreachedOf(made).length;
+  const unreached = unassignedOf(made).length;
   return [
     `${sentence}. ${facts}.`,
     qualityOf(made.result)?.words,

@@ -3,7 +3,7 @@
 import { rallyName } from "../../domain/palette.js";
 import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
-import * as link from "../lost_link.js";
+import * as link from "../options/lost_link.js";
 
 /** @import { LostLink, MissionContext } from "../types.d.ts" */
 

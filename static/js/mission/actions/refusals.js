@@ -1,8 +1,8 @@
 /** Texts on what the server refuses of a selection, without paths of fields, and the changes that would help. */
 
 import { t } from "../../text.js";
-import { withUavAs } from "../mission_uavs.js";
 import { withoutLocks, withWishes } from "../selection.js";
+import { withUavAs } from "../uavs/mission_uavs.js";
 
 /** @import { ApiError } from "../../api.js" */
 /** @import { Lock, MissionSelection, PickedTarget, PickedUav } from "../types.d.ts" */

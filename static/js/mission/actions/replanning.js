@@ -2,8 +2,8 @@
 
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { differenceWords } from "../compare.js";
-import { isPlanCurrent } from "../plan_view.js";
+import { differenceWords } from "../plan/compare.js";
+import { isPlanCurrent } from "../plan/plan_view.js";
 import { basisOf, withoutWishes } from "../selection.js";
 import { MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
 

@@ -3,9 +3,9 @@
 import { freshKey } from "../../api.js";
 import { t } from "../../text.js";
 import { clockText, dayText } from "../../units.js";
-import { UNSAID } from "../flight_options.js";
-import { proposedName } from "../proposed_name.js";
+import { UNSAID } from "../options/flight_options.js";
 import { basisOf, requestOf } from "../selection.js";
+import { proposedName } from "../targets/proposed_name.js";
 
 /** @import { MissionInputRequest, PlanInputRequest } from "../../api_types.d.ts" */
 /** @import { MissionPageState, MissionSelection, Version } from "../types.d.ts" */

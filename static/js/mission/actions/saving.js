@@ -3,7 +3,7 @@
 import { ApiError, get, isAbort, patch, post } from "../../api.js";
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { isPlanCurrent, isUnsaved } from "../plan_view.js";
+import { isPlanCurrent, isUnsaved } from "../plan/plan_view.js";
 import { storedBasisOf } from "../selection.js";
 import { settleDraft } from "./opening.js";
 import { attemptOf } from "./save_request.js";

@@ -2,8 +2,8 @@
 
 import { t, tn } from "../../text.js";
 import { durationText, exactText, heightText, lengthText, percentText } from "../../units.js";
+import { landing_s } from "../plan/route_times.js";
 import { levelWords } from "../rehearsal/rehearsal.js";
-import { landing_s } from "../route_times.js";
 
 /** @import { Mission, NearestZone, Plan, Rehearsal, Route } from "../../api_types.d.ts" */
 

@@ -3,7 +3,7 @@
 import { ApiError, request } from "../../api.js";
 import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { isPlanCurrent } from "../plan_view.js";
+import { isPlanCurrent } from "../plan/plan_view.js";
 import * as hand from "./hand_route.js";
 import { createManualEditChecks, NO_FAULTS } from "./manual_edit_checks.js";
 

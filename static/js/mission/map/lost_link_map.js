@@ -2,8 +2,8 @@
 
 import { rallyName } from "../../domain/palette.js";
 import * as layer from "../../map/layers/lost_link.js";
-import { checkStateOf, quietReturnsOf, returnLinesOf, usesRallyPoints, wholeLostLink } from "../lost_link.js";
-import { isPlanCurrent } from "../plan_view.js";
+import { checkStateOf, quietReturnsOf, returnLinesOf, usesRallyPoints, wholeLostLink } from "../options/lost_link.js";
+import { isPlanCurrent } from "../plan/plan_view.js";
 
 /** @import { MapLibreMap } from "../../map/types.d.ts" */
 /** @import { MissionActions, MissionStore } from "../types.d.ts" */

@@ -5,9 +5,9 @@ import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
 import { clockText, powerText } from "../../units.js";
 import { targetDifferences, uavDifferences } from "../actions/merge.js";
-import { conditionsText, departureText } from "../flight_options.js";
-import { lostLinkText } from "../lost_link.js";
-import { OBJECTIVES } from "../plan_view.js";
+import { conditionsText, departureText } from "../options/flight_options.js";
+import { lostLinkText } from "../options/lost_link.js";
+import { OBJECTIVES } from "../plan/plan_view.js";
 
 /** @import { Conflict, MissionSelection, PickedTarget, PickedUav, Version } from "../types.d.ts" */
 

@@ -3,10 +3,10 @@
 import { h } from "../../dom.js";
 import { t, tn } from "../../text.js";
 import { numberText } from "../../units.js";
-import { caughtWords, groupsOf, rowsWithout } from "../caught.js";
 import { MAX_TARGETS } from "../selection.js";
+import { caughtWords, groupsOf, rowsWithout } from "../targets/caught.js";
 
-/** @import { Group, GroupName } from "../caught.js" */
+/** @import { Group, GroupName } from "../targets/caught.js" */
 /** @import { Caught, MissionActions, MissionStore } from "../types.d.ts" */
 
 /** @type {Record<GroupName, string>} */

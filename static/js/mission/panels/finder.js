@@ -2,8 +2,7 @@
 
 import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
-import { placesFound } from "../../map/places_found.js";
-import { toldApart } from "../../map/told_apart.js";
+import { placesFound, toldApart } from "../../map/places_found.js";
 import { t, tn } from "../../text.js";
 import { detailOf, MAX_TARGETS } from "../selection.js";
 

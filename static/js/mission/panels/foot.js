@@ -3,10 +3,10 @@
 import { byId, find } from "../../dom.js";
 import { t } from "../../text.js";
 import { percentText } from "../../units.js";
-import { isSavedOnRequest, lackingOf, nextAct, whyNotApproved, whyNotRehearsed } from "../next_act.js";
-import { bestWordsOf } from "../plan_quality.js";
+import { isSavedOnRequest, lackingOf, nextAct, whyNotApproved, whyNotRehearsed } from "../flying/next_act.js";
+import { bestWordsOf } from "../plan/plan_quality.js";
 
-/** @import { NextAct } from "../next_act.js" */
+/** @import { NextAct } from "../flying/next_act.js" */
 /** @import { MissionActions, MissionPageState, MissionStore, Planning } from "../types.d.ts" */
 
 /** @type {NextAct[]} */

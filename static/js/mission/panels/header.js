@@ -10,14 +10,14 @@ import { toast } from "../../page/toast.js";
 import { markSimulated } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";
-import { standingUavs } from "../fleet.js";
-import { departureText } from "../flight_options.js";
 import { rehearsalOfPlan } from "../flying/briefing.js";
-import { factsOf } from "../head_facts.js";
-import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
-import { proposedName } from "../proposed_name.js";
-import { unreachedCards } from "../unreached/cards.js";
-import { causesOf } from "../unreached/causes.js";
+import { departureText } from "../options/flight_options.js";
+import { factsOf } from "../plan/head_facts.js";
+import { isPlanCurrent, isUnsaved, unassignedOf } from "../plan/plan_view.js";
+import { proposedName } from "../targets/proposed_name.js";
+import { standingUavs } from "../uavs/fleet.js";
+import { unassignedCards } from "../unassigned/cards.js";
+import { causesOf } from "../unassigned/causes.js";
 import { showHistory } from "./history.js";
 import { showLegalTimes } from "./options/legal_times.js";
 import { shownChanges, uavNotice } from "./uavs/changes.js";
@@ -25,7 +25,7 @@ import { shownChanges, uavNotice } from "./uavs/changes.js";
 /** @import { Mission } from "../../api_types.d.ts" */
 /** @import { Child } from "../../dom.js" */
 /** @import { MenuItem } from "../../page/chrome.js" */
-/** @import { CardContext } from "../unreached/cards.js" */
+/** @import { CardContext } from "../unassigned/cards.js" */
 /** @import { Conflict, MissionActions, MissionPageState, MissionStore, WayOut } from "../types.d.ts" */
 
 /** @typedef {(position: number[]) => void} ShowPlace on the map */
@@ -166,7 +166,7 @@ function drawHead(state, canPlan) {
   const ownState = isPlanCurrent(state) ? "planned" : "draft";
   const name = mission && !["draft", "planned"].includes(mission.state) ? mission.state : ownState;
   const chip = byId("mission-state");
-  const missed = name === "planned" && state.plan ? unreachedOf(state.plan).length : 0;
+  const missed = name === "planned" && state.plan ? unassignedOf(state.plan).length : 0;
   const planned = plannedChip(state.selection.targets.length, missed);
   chip.className = name === "planned" ? planned.className : `chip ${name}`;
   chip.textContent = name === "planned" ? planned.words : STATE_WORDS[name];
@@ -280,7 +280,7 @@ const conflictNotice = ({ whose, at }, actions) =>
 function planNotices({ plan }, context) {
   return folded([
     ...(plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", message)),
-    ...unreachedCards(plan, context),
+    ...unassignedCards(plan, context),
   ]);
 }
 

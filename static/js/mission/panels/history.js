@@ -5,7 +5,7 @@ import { h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
 import { exactText, lengthText, whenText } from "../../units.js";
-import { lostLinkText } from "../lost_link.js";
+import { lostLinkText } from "../options/lost_link.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { HistoryEntry, HistoryPage, LostLinkOutput, Mission } from "../../api_types.d.ts" */

@@ -4,8 +4,8 @@ import { ApiError } from "../../api.js";
 import { find, h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
-import { listIn, lookUp, MAX_REFS, rowsToAdd } from "../list_reading.js";
 import { nameOf, targetOfRow } from "../selection.js";
+import { listIn, lookUp, MAX_REFS, rowsToAdd } from "../targets/list_reading.js";
 
 /** @import { AssetKind, LookupResult } from "../../api_types.d.ts" */
 /** @import { MissionActions } from "../types.d.ts" */

@@ -3,7 +3,7 @@
 import { byId, h, icon } from "../../dom.js";
 import { t, tn } from "../../text.js";
 import { clockText, exactText } from "../../units.js";
-import { isUnsaved } from "../plan_view.js";
+import { isUnsaved } from "../plan/plan_view.js";
 
 /** @import { Present } from "../../api_types.d.ts" */
 /** @import { MissionPageState, MissionStore } from "../types.d.ts" */

@@ -4,13 +4,13 @@ import { post } from "../../api.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { t } from "../../text.js";
 import { heightText } from "../../units.js";
-import { staysOf } from "../route_times.js";
-import { passedZones, zoneWords } from "../zones_passed.js";
+import { passedZones, zoneWords } from "../options/zones_passed.js";
+import { staysOf } from "../plan/route_times.js";
 
 /** @import { Profile, Waypoint, ZoneAlong } from "../../api_types.d.ts" */
-/** @import { Stay } from "../route_times.js" */
+/** @import { Stay } from "../plan/route_times.js" */
 /** @import { ShownRoute } from "../types.d.ts" */
-/** @import { PassedZone } from "../zones_passed.js" */
+/** @import { PassedZone } from "../options/zones_passed.js" */
 
 /** @typedef {{ at_m: number, ground_m: number | null }} GroundSample */
 /** @typedef {ReturnType<typeof groundOf>} GroundUnder */

@@ -5,15 +5,15 @@ import { heightsText } from "../../domain/zone_heights.js";
 import { rulesOf } from "../../terrain/profile_chart.js";
 import { t } from "../../text.js";
 import { heightText, lengthText, percentText } from "../../units.js";
-import { timeAt } from "../flight_options.js";
-import { stayText } from "../route_times.js";
-import { zoneWords } from "../zones_passed.js";
+import { timeAt } from "../options/flight_options.js";
+import { zoneWords } from "../options/zones_passed.js";
+import { stayText } from "../plan/route_times.js";
 import { bandOf, heightAt, profileSentence, readingAt, spanOf } from "./profile.js";
 import { scaleOf } from "./span_strip.js";
 
 /** @import { Flight, GroundSample, PathPoint, Span } from "./profile.js" */
 /** @import { PickedTarget, ShownRoute } from "../types.d.ts" */
-/** @import { PassedZone } from "../zones_passed.js" */
+/** @import { PassedZone } from "../options/zones_passed.js" */
 
 /** @typedef {(metres: number) => number} Axis metres to px */
 /**

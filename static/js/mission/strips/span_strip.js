@@ -8,10 +8,10 @@ import { profileOf } from "../../domain/route_profile.js";
 import { staticAddress } from "../../static_address.js";
 import { t } from "../../text.js";
 import { LONG_UNIT, lengthText, numberText } from "../../units.js";
-import { zoneWords } from "../zones_passed.js";
+import { zoneWords } from "../options/zones_passed.js";
 
 /** @import { Waypoint } from "../../api_types.d.ts" */
-/** @import { PassedZone } from "../zones_passed.js" */
+/** @import { PassedZone } from "../options/zones_passed.js" */
 /** @import { PickedTarget } from "../types.d.ts" */
 
 /** @typedef {ReturnType<typeof profileOf>} FlownProfile */

@@ -3,11 +3,20 @@
 import { find, h } from "../../../dom.js";
 import { scheduleText } from "../../../domain/schedule_words.js";
 import { t } from "../../../text.js";
-import { departureText } from "../../flight_options.js";
-import { legsText, momentAt, STEP_MS, shareOf, spanAt, spanText, stepWithin, ticksOf } from "../../legal_times.js";
+import { departureText } from "../../options/flight_options.js";
+import {
+  legsText,
+  momentAt,
+  STEP_MS,
+  shareOf,
+  spanAt,
+  spanText,
+  stepWithin,
+  ticksOf,
+} from "../../options/legal_times.js";
 
 /** @import { Child } from "../../../dom.js" */
-/** @import { legalTimesOf } from "../../legal_times.js" */
+/** @import { legalTimesOf } from "../../options/legal_times.js" */
 
 /** @typedef {ReturnType<typeof legalTimesOf>} LegalTimes */
 /** @typedef {LegalTimes["windows"][number]} Span of time */

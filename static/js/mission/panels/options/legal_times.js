@@ -5,8 +5,8 @@ import { h } from "../../../dom.js";
 import { open } from "../../../page/keyboard.js";
 import { t } from "../../../text.js";
 import { zoneText } from "../../../units.js";
-import { betterWords, legalTimesOf, marginText, mayDepartBetter, wordsOf } from "../../legal_times.js";
-import { isPlanCurrent, routesOf } from "../../plan_view.js";
+import { betterWords, legalTimesOf, marginText, mayDepartBetter, wordsOf } from "../../options/legal_times.js";
+import { isPlanCurrent, routesOf } from "../../plan/plan_view.js";
 import { requestOf } from "../../selection.js";
 import { drawLegalChart } from "./legal_chart.js";
 

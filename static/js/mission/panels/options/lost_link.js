@@ -2,7 +2,7 @@
 
 import { byId, h } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
-import * as link from "../../lost_link.js";
+import * as link from "../../options/lost_link.js";
 import { faultPlace, showFault } from "./field_fault.js";
 import { createLinkCheck } from "./lost_link_check.js";
 import { createRallyList } from "./rally_list.js";

@@ -3,10 +3,10 @@
 import { h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
-import * as link from "../../lost_link.js";
-import { isPlanCurrent } from "../../plan_view.js";
+import * as link from "../../options/lost_link.js";
+import { isPlanCurrent } from "../../plan/plan_view.js";
 
-/** @import { FailureGroup } from "../../lost_link.js" */
+/** @import { FailureGroup } from "../../options/lost_link.js" */
 /** @import { MissionPageState, MissionStore, ShownPlan } from "../../types.d.ts" */
 
 const SHOWN_FIRST = 6; // groups of waypoints that fail

@@ -2,7 +2,7 @@
 
 import { byId, find, h } from "../../../dom.js";
 import { t } from "../../../text.js";
-import { endingsOf, figuresOf, OBJECTIVES } from "../../plan_view.js";
+import { endingsOf, figuresOf, OBJECTIVES } from "../../plan/plan_view.js";
 import { basisOf } from "../../selection.js";
 
 /** @import { MissionActions, MissionPageState, MissionStore } from "../../types.d.ts" */

@@ -3,9 +3,9 @@
 import { byId } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { powerText, zoneText } from "../../../units.js";
-import { conditionsText, departureText } from "../../flight_options.js";
-import { lostLinkText } from "../../lost_link.js";
-import { OBJECTIVES } from "../../plan_view.js";
+import { conditionsText, departureText } from "../../options/flight_options.js";
+import { lostLinkText } from "../../options/lost_link.js";
+import { OBJECTIVES } from "../../plan/plan_view.js";
 
 /** @import { MissionStore } from "../../types.d.ts" */
 

@@ -5,7 +5,7 @@ import { rallyName } from "../../../domain/palette.js";
 import { positionIn } from "../../../map/coordinates_read.js";
 import { toast } from "../../../page/toast.js";
 import { t } from "../../../text.js";
-import * as link from "../../lost_link.js";
+import * as link from "../../options/lost_link.js";
 import { faultPlace, showFault } from "./field_fault.js";
 
 /** @import { LostLink, MissionActions, MissionStore } from "../../types.d.ts" */

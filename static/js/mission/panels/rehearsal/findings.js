@@ -4,7 +4,7 @@ import { h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { percentText } from "../../../units.js";
-import { conditionsOf } from "../../flight_options.js";
+import { conditionsOf } from "../../options/flight_options.js";
 import { conditionsByUav, failuresFirst, fixOf } from "../../rehearsal/findings.js";
 import { LEVELS, levelWords } from "../../rehearsal/rehearsal.js";
 

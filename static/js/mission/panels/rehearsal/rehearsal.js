@@ -3,7 +3,7 @@
 import { byId, h, refill } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { percentText, whenText } from "../../../units.js";
-import { whyNotRehearsed } from "../../next_act.js";
+import { whyNotRehearsed } from "../../flying/next_act.js";
 import { isRunning, levelWords } from "../../rehearsal/rehearsal.js";
 import { createAssessment } from "./assessment.js";
 import { mountForm } from "./form.js";

@@ -4,12 +4,12 @@ import { byId, h, setChildren } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { heightText, lengthText, percentText } from "../../../units.js";
-import { timeAt } from "../../flight_options.js";
-import { isPlanCurrent, lastPlanOf, shownRoute } from "../../plan_view.js";
-import { batteryOf, landing_s, stayText } from "../../route_times.js";
+import { timeAt } from "../../options/flight_options.js";
+import { marginWords, zoneLegend, zoneWords } from "../../options/zones_passed.js";
+import { isPlanCurrent, lastPlanOf, shownRoute } from "../../plan/plan_view.js";
+import { batteryOf, landing_s, stayText } from "../../plan/route_times.js";
 import { flightOf, readingAt } from "../../strips/profile.js";
 import { drawProfile, profileTable } from "../../strips/profile_chart.js";
-import { marginWords, zoneLegend, zoneWords } from "../../zones_passed.js";
 import { mainOf, stripRoom } from "./room.js";
 
 /** @import { MissionPageState, MissionStore, ShownPlan, ShownRoute } from "../../types.d.ts" */

@@ -2,10 +2,10 @@
 
 import { byId, h, icon, setChildren } from "../../../dom.js";
 import { t } from "../../../text.js";
-import { checkStateOf, checkText } from "../../lost_link.js";
-import { qualityOf, wishWordsOf } from "../../plan_quality.js";
-import { isPlanCurrent } from "../../plan_view.js";
-import { separationOf } from "../../route_times.js";
+import { checkStateOf, checkText } from "../../options/lost_link.js";
+import { qualityOf, wishWordsOf } from "../../plan/plan_quality.js";
+import { isPlanCurrent } from "../../plan/plan_view.js";
+import { separationOf } from "../../plan/route_times.js";
 
 /** @import { Child } from "../../../dom.js" */
 /** @import { MissionActions, MissionPageState, ShownPlan } from "../../types.d.ts" */

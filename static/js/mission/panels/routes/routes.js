@@ -2,9 +2,9 @@
 
 import { byId, find, h } from "../../../dom.js";
 import { t } from "../../../text.js";
-import { counterpart } from "../../compare.js";
-import { isPlanCurrent, isPlanInSight, lastPlanOf, pointAlong, routesOf, sentenceOf } from "../../plan_view.js";
-import { batteryOf } from "../../route_times.js";
+import { counterpart } from "../../plan/compare.js";
+import { isPlanCurrent, isPlanInSight, lastPlanOf, pointAlong, routesOf, sentenceOf } from "../../plan/plan_view.js";
+import { batteryOf } from "../../plan/route_times.js";
 import { stripAxis } from "../../strips/span_strip.js";
 import { drawQuality } from "./quality.js";
 import { isTight, mainOf, stripRoom } from "./room.js";

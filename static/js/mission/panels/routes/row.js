@@ -4,10 +4,10 @@ import { h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { durationText, lengthText } from "../../../units.js";
-import { moreOrLess } from "../../compare.js";
-import { timeAt } from "../../flight_options.js";
-import { endingOf, GROUNDING } from "../../plan_view.js";
-import { batteryOf, delayText, landing_s, staysText } from "../../route_times.js";
+import { timeAt } from "../../options/flight_options.js";
+import { moreOrLess } from "../../plan/compare.js";
+import { endingOf, GROUNDING } from "../../plan/plan_view.js";
+import { batteryOf, delayText, landing_s, staysText } from "../../plan/route_times.js";
 
 /** @import { Child } from "../../../dom.js" */
 /** @import { PlanResult, ShortRoute, ShownRoute } from "../../types.d.ts" */

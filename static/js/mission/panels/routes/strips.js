@@ -4,14 +4,14 @@ import { h } from "../../../dom.js";
 import { profileOf } from "../../../domain/route_profile.js";
 import { t } from "../../../text.js";
 import { durationText, lengthText } from "../../../units.js";
-import { profileOfSummary } from "../../compare.js";
-import { lockOf, ordersOf, stopsWished, wishedOrders } from "../../locks.js";
-import { uavsByName } from "../../mission_uavs.js";
-import { routesOf, stripLabel } from "../../plan_view.js";
-import { staysOf, stayText } from "../../route_times.js";
+import { passedZones } from "../../options/zones_passed.js";
+import { profileOfSummary } from "../../plan/compare.js";
+import { routesOf, stripLabel } from "../../plan/plan_view.js";
+import { staysOf, stayText } from "../../plan/route_times.js";
 import { paleStrip, spanStrip, stripTable } from "../../strips/span_strip.js";
 import { createPillDrag } from "../../strips/strip_drag.js";
-import { passedZones } from "../../zones_passed.js";
+import { lockOf, ordersOf, stopsWished, wishedOrders } from "../../targets/locks.js";
+import { uavsByName } from "../../uavs/mission_uavs.js";
 
 /** @import { Waypoint } from "../../../api_types.d.ts" */
 /** @import { Child } from "../../../dom.js" */

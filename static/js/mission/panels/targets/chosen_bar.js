@@ -3,7 +3,7 @@
 import { byId, h, icon } from "../../../dom.js";
 import { toggleMenu } from "../../../page/chrome.js";
 import { t, tn } from "../../../text.js";
-import { targetMenu } from "../../target_menu.js";
+import { targetMenu } from "../../targets/target_menu.js";
 
 /** @import { MissionActions, MissionStore } from "../../types.d.ts" */
 

@@ -3,9 +3,9 @@
 import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
-import { lockOf } from "../../locks.js";
 import { isUsualTask, nameOf, taskOf } from "../../selection.js";
-import { priorityOf, taskIcon, taskText, taskWord, whoMayFly } from "../../target_menu.js";
+import { lockOf } from "../../targets/locks.js";
+import { priorityOf, taskIcon, taskText, taskWord, whoMayFly } from "../../targets/target_menu.js";
 
 /** @import { MissionSelection, PickedTarget } from "../../types.d.ts" */
 

@@ -3,11 +3,11 @@
 import { byId, keyedList } from "../../../dom.js";
 import { toggleMenu } from "../../../page/chrome.js";
 import { t, tn } from "../../../text.js";
-import { ordersOf } from "../../locks.js";
-import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan_view.js";
-import { arrivalsOf } from "../../route_times.js";
+import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan/plan_view.js";
+import { arrivalsOf } from "../../plan/route_times.js";
 import { isWhole } from "../../selection.js";
-import { targetMenu } from "../../target_menu.js";
+import { ordersOf } from "../../targets/locks.js";
+import { targetMenu } from "../../targets/target_menu.js";
 import { createChoosing } from "./choosing.js";
 import { mountChosenBar } from "./chosen_bar.js";
 import { createGroups } from "./group.js";

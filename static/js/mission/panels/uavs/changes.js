@@ -2,8 +2,8 @@
 
 import { h, icon } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
-import { isPlanCurrent } from "../../plan_view.js";
-import { changeWords, openChanges } from "../../uav_changes.js";
+import { isPlanCurrent } from "../../plan/plan_view.js";
+import { changeWords, openChanges } from "../../uavs/uav_changes.js";
 
 /** @import { MissionActions, MissionPageState } from "../../types.d.ts" */
 

@@ -5,7 +5,7 @@ import { routeNumber } from "../../../domain/palette.js";
 import { markSimulated } from "../../../simulated.js";
 import { t } from "../../../text.js";
 import { percentText } from "../../../units.js";
-import { canFly, factsOfUav } from "../../fleet.js";
+import { canFly, factsOfUav } from "../../uavs/fleet.js";
 
 /** @import { StandingUav } from "../../types.d.ts" */
 

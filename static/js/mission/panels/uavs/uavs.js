@@ -2,9 +2,9 @@
 
 import { byId, h, keyedList } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
-import { canFly, choicesOf, inFleetOrder, isAskedFor, standingUavs } from "../../fleet.js";
-import { GROUNDING, isPlanCurrent } from "../../plan_view.js";
-import { figuresInMission } from "../../uav_changes.js";
+import { GROUNDING, isPlanCurrent } from "../../plan/plan_view.js";
+import { canFly, choicesOf, inFleetOrder, isAskedFor, standingUavs } from "../../uavs/fleet.js";
+import { figuresInMission } from "../../uavs/uav_changes.js";
 import { changeDialog, newDialog } from "./dialog.js";
 import { refreshRow, uavRow } from "./row.js";
 

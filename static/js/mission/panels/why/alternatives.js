@@ -3,10 +3,10 @@
 import { h, icon } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { durationText, energyText, lengthText, numberText } from "../../../units.js";
-import { isWithoutCapacity, longestDuration_s, OBJECTIVES } from "../../plan_view.js";
-import { standing_s } from "../../route_times.js";
+import { isWithoutCapacity, longestDuration_s, OBJECTIVES } from "../../plan/plan_view.js";
+import { standing_s } from "../../plan/route_times.js";
 import { basisOf } from "../../selection.js";
-import { openChanges } from "../../uav_changes.js";
+import { openChanges } from "../../uavs/uav_changes.js";
 
 /** @import { Child } from "../../../dom.js" */
 /** @import { MissionActions, MissionPageState, PlanResult } from "../../types.d.ts" */

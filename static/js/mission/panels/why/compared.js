@@ -4,7 +4,7 @@ import { h } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { durationText, lengthText } from "../../../units.js";
-import { counterpart, endsBetween, moreOrLess, movesBetween, summaryOfPlan } from "../../compare.js";
+import { counterpart, endsBetween, moreOrLess, movesBetween, summaryOfPlan } from "../../plan/compare.js";
 
 /** @import { ShortPlan, ShortRoute, ShownPlan } from "../../types.d.ts" */
 

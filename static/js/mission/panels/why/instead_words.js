@@ -2,7 +2,7 @@
 
 import { t } from "../../../text.js";
 import { durationText, energyText, lengthText } from "../../../units.js";
-import { longestDuration_s } from "../../plan_view.js";
+import { longestDuration_s } from "../../plan/plan_view.js";
 import { energyFor_wh, timeFor_s } from "./in_unit.js";
 
 /** @import { RouteExplanation } from "../../../api_types.d.ts" */

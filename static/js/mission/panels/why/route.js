@@ -6,7 +6,7 @@ import { heightsText } from "../../../domain/zone_heights.js";
 import { zoneDetails } from "../../../map/zone_details.js";
 import { t } from "../../../text.js";
 import { durationText, energyText, lengthText } from "../../../units.js";
-import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../../plan_view.js";
+import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../../plan/plan_view.js";
 import { basisOf } from "../../selection.js";
 import { inUnit } from "./in_unit.js";
 import { insteadWords } from "./instead_words.js";

@@ -7,7 +7,7 @@ import { post } from "../../../api.js";
 import { byId, h, icon, setChildren } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
-import { isPlanCurrent, lastPlanOf } from "../../plan_view.js";
+import { isPlanCurrent, lastPlanOf } from "../../plan/plan_view.js";
 import { requestOf } from "../../selection.js";
 import { alternatives } from "./alternatives.js";
 import { createManualEdit } from "./by_hand.js";

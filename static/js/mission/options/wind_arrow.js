@@ -1,6 +1,6 @@
 /** The arrow of a wind. */
 
-import { svg } from "../dom.js";
+import { svg } from "../../dom.js";
 
 /** It points to where the wind blows that comes from there. @param {number} from_deg */
 export function windArrow(from_deg) {

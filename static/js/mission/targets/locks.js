@@ -6,10 +6,10 @@
  * [{ uav: name, targets: [keys] }].
  */
 
-import { uavsByName } from "./mission_uavs.js";
-import { wishesOf, withWishes } from "./selection.js";
+import { wishesOf, withWishes } from "../selection.js";
+import { uavsByName } from "../uavs/mission_uavs.js";
 
-/** @import { FlownOrder, Lock, MissionSelection, PickedTarget, ShownPlan } from "./types.d.ts" */
+/** @import { FlownOrder, Lock, MissionSelection, PickedTarget, ShownPlan } from "../types.d.ts" */
 
 /** @param {Pick<MissionSelection, "locks">} selection */
 const locksOf = (selection) => selection.locks ?? [];

@@ -25,7 +25,7 @@ const TOLD_BY_TITLE = ["stands_inside_zone", "runs_through_zone", "lands_through
 const NEEDS_UAV = ["not_connected", "no_access_for_uavs"]; // a UAV that starts there would do
 
 /** @param {ShownPlan | null} plan @param {CardContext} context @returns {HTMLElement[]} */
-export const unreachedCards = (plan, context) => causesOf(plan).map((cause) => card(cause, context));
+export const unassignedCards = (plan, context) => causesOf(plan).map((cause) => card(cause, context));
 
 /** @param {Cause} cause @param {CardContext} context */
 function card(cause, context) {

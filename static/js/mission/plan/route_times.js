@@ -1,11 +1,11 @@
 /** When routes reach their targets, the battery left, and their separation, as text. Values in, values out. */
 
-import { t, tn } from "../text.js";
-import { durationText, energyText, heightText, lengthText, numberText, percentText } from "../units.js";
-import { timeAt } from "./flight_options.js";
+import { t, tn } from "../../text.js";
+import { durationText, energyText, heightText, lengthText, numberText, percentText } from "../../units.js";
+import { timeAt } from "../options/flight_options.js";
 
-/** @import { Plan, Route, Separation } from "../api_types.d.ts" */
-/** @import { ShownPlan } from "./types.d.ts" */
+/** @import { Plan, Route, Separation } from "../../api_types.d.ts" */
+/** @import { ShownPlan } from "../types.d.ts" */
 
 const SHORT_S = 120; // shorter gaps are shown in seconds
 

@@ -1,13 +1,13 @@
 /** Changes of UAVs since a mission took over their figures, and figures that are the mission's own. Values in, values out. */
 
-import { t } from "../text.js";
-import { OWN_FIGURES } from "../uav_figures.js";
-import { LONG_UNIT, numberText, SPEED_UNIT } from "../units.js";
-import { PERFORMANCE } from "./selection.js";
+import { t } from "../../text.js";
+import { OWN_FIGURES } from "../../uav_figures.js";
+import { LONG_UNIT, numberText, SPEED_UNIT } from "../../units.js";
+import { PERFORMANCE } from "../selection.js";
 
-/** @import { UavChange, UavFigure } from "../api_types.d.ts" */
-/** @import { OwnFigure } from "../uav_figures.js" */
-/** @import { FleetUav, MissionSelection, PickedUav } from "./types.d.ts" */
+/** @import { UavChange, UavFigure } from "../../api_types.d.ts" */
+/** @import { OwnFigure } from "../../uav_figures.js" */
+/** @import { FleetUav, MissionSelection, PickedUav } from "../types.d.ts" */
 
 /** @typedef {UavChange["figures"][number]["kept"]} FigureValue */
 

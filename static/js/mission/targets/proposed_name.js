@@ -1,9 +1,9 @@
 /** The name that a mission is proposed, from what is picked. Values in, values out. */
 
-import { tn } from "../text.js";
-import { nameOf } from "./selection.js";
+import { tn } from "../../text.js";
+import { nameOf } from "../selection.js";
 
-/** @import { PickedTarget } from "./types.d.ts" */
+/** @import { PickedTarget } from "../types.d.ts" */
 
 const MAX_LENGTH = 120;
 

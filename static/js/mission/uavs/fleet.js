@@ -1,10 +1,10 @@
 /** Fleet and mission together, as values. */
 
-import { routeLetter } from "../domain/palette.js";
-import { t, tn } from "../text.js";
-import { exactEnergyText, lengthText, speedText } from "../units.js";
+import { routeLetter } from "../../domain/palette.js";
+import { t, tn } from "../../text.js";
+import { exactEnergyText, lengthText, speedText } from "../../units.js";
 
-/** @import { FleetUav, MissionPageState, PickedUav, StandingUav } from "./types.d.ts" */
+/** @import { FleetUav, MissionPageState, PickedUav, StandingUav } from "../types.d.ts" */
 
 /**
  * The fleet's present facts on a UAV; a mission keeps its own name, start, figures, sensors and end.

@@ -1,10 +1,10 @@
 /** Texts on the quality of a plan, the cost of its locks, and the best plan of a running search. Values in, values out. */
 
-import { t, tn } from "../text.js";
-import { durationText, energyText, lengthText, numberText } from "../units.js";
+import { t, tn } from "../../text.js";
+import { durationText, energyText, lengthText, numberText } from "../../units.js";
 
-/** @import { Plan } from "../api_types.d.ts" */
-/** @import { BestSoFar } from "./types.d.ts" */
+/** @import { Plan } from "../../api_types.d.ts" */
+/** @import { BestSoFar } from "../types.d.ts" */
 
 /** @param {number} share */
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;

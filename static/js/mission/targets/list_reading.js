@@ -1,9 +1,9 @@
 /** A pasted list of references: their parsing, and the server's matches for each. */
 
-import { post } from "../api.js";
+import { post } from "../../api.js";
 
-/** @import { Answer } from "../api.js" */
-/** @import { LookupOutput, LookupResult } from "../api_types.d.ts" */
+/** @import { Answer } from "../../api.js" */
+/** @import { LookupOutput, LookupResult } from "../../api_types.d.ts" */
 
 const PER_REQUEST = 2000;
 export const MAX_REFS = 10_000;

@@ -1,9 +1,9 @@
 /** UAVs of a mission: taken from the fleet, distinguished by name, moved, changed for it. Values in, values out. */
 
-import { OWN_FIGURES } from "../uav_figures.js";
+import { OWN_FIGURES } from "../../uav_figures.js";
 
-/** @import { UavFeature } from "../api_types.d.ts" */
-/** @import { FleetUav, MissionSelection, PickedUav } from "./types.d.ts" */
+/** @import { UavFeature } from "../../api_types.d.ts" */
+/** @import { FleetUav, MissionSelection, PickedUav } from "../types.d.ts" */
 
 const MAX_UAV_NAME_LENGTH = 100; // missions/serializers/limits.py
 

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { causesOf, causeWords, commonSentence } from "../../../static/js/mission/unreached/causes.js";
+import { causesOf, causeWords, commonSentence } from "../../../static/js/mission/unassigned/causes.js";
 
 /** @param {{ reason: string, message: string, why: { code: string, params?: object }[] }[]} unassigned */
 const planOf = (unassigned) => ({

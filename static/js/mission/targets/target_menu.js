@@ -1,14 +1,14 @@
 /** Tasks, priority and UAV of targets: texts, and the menu that sets them for one, several or all. */
 
-import { h, icon } from "../dom.js";
-import { closeMenu } from "../page/chrome.js";
-import { t, tn } from "../text.js";
-import { durationText } from "../units.js";
+import { h, icon } from "../../dom.js";
+import { closeMenu } from "../../page/chrome.js";
+import { t, tn } from "../../text.js";
+import { durationText } from "../../units.js";
+import { MAX_HOLD_S, sensorsKnown, taskOf, wishesOf } from "../selection.js";
+import { uavsByName } from "../uavs/mission_uavs.js";
 import { lockOf, wishedPlace } from "./locks.js";
-import { uavsByName } from "./mission_uavs.js";
-import { MAX_HOLD_S, sensorsKnown, taskOf, wishesOf } from "./selection.js";
 
-/** @import { FlownOrder, MissionActions, MissionPageState, PickedTarget, Task, Wishes } from "./types.d.ts" */
+/** @import { FlownOrder, MissionActions, MissionPageState, PickedTarget, Task, Wishes } from "../types.d.ts" */
 
 /** @typedef {Pick<MissionPageState, "selection" | "fleet"> & { orders: FlownOrder[] }} Known what the menu is made from */
 /** @typedef {{ icon: string, words: string, act: () => unknown }} MenuItem */

@@ -1,10 +1,10 @@
 /** The act that comes next for a mission that can be planned, and why it would be refused. Values in, values out. */
 
-import { t } from "../text.js";
-import { rehearsalOfPlan } from "./flying/briefing.js";
-import { isPlanCurrent, isUnsaved, routesOf } from "./plan_view.js";
+import { t } from "../../text.js";
+import { isPlanCurrent, isUnsaved, routesOf } from "../plan/plan_view.js";
+import { rehearsalOfPlan } from "./briefing.js";
 
-/** @import { MissionPageState, MissionSelection } from "./types.d.ts" */
+/** @import { MissionPageState, MissionSelection } from "../types.d.ts" */
 
 /** @typedef {"plan" | "rehearse" | "approve"} NextAct */
 

@@ -1,10 +1,10 @@
 /** Options of a flight: departure and conditions, charging, and lost-link action. Values in, values out. */
 
-import { t } from "../text.js";
-import { clockText, dayText, heightText, sinceText, speedText, temperatureText } from "../units.js";
+import { t } from "../../text.js";
+import { clockText, dayText, heightText, sinceText, speedText, temperatureText } from "../../units.js";
 import { lostLinkOf } from "./lost_link.js";
 
-/** @import { Conditions, FlightOptions, LostLink } from "./types.d.ts" */
+/** @import { Conditions, FlightOptions, LostLink } from "../types.d.ts" */
 
 /** Any time, calm, no charging; without a link UAVs go on. @type {Readonly<FlightOptions>} */
 export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null, lost_link: null });

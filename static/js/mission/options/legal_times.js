@@ -3,13 +3,13 @@
  * values out.
  */
 
-import { locale, t, tn } from "../text.js";
-import { clockText, durationText, energyText, lengthText, typedMoment } from "../units.js";
+import { locale, t, tn } from "../../text.js";
+import { clockText, durationText, energyText, lengthText, typedMoment } from "../../units.js";
 import { departureText } from "./flight_options.js";
 import { marginWords } from "./zones_passed.js";
 
-/** @import { BlockingZone, LaterDeparture, LegalWindows, Plan, TimeSpan } from "../api_types.d.ts" */
-/** @import { ShownRoute } from "./types.d.ts" */
+/** @import { BlockingZone, LaterDeparture, LegalWindows, Plan, TimeSpan } from "../../api_types.d.ts" */
+/** @import { ShownRoute } from "../types.d.ts" */
 
 /** @typedef {{ from_ms: number, to_ms: number }} Span of moments, open at its end */
 /** @typedef {ReturnType<typeof legalTimesOf>} LegalTimes */

@@ -1,10 +1,10 @@
 /** The line of facts below a mission's name. Values in, values out. */
 
-import { t, tn } from "../text.js";
-import { clockText } from "../units.js";
+import { t, tn } from "../../text.js";
+import { clockText } from "../../units.js";
 import { isPlanCurrent } from "./plan_view.js";
 
-/** @import { MissionPageState } from "./types.d.ts" */
+/** @import { MissionPageState } from "../types.d.ts" */
 
 /** @param {number} count */
 const targetsText = (count) => tn(count, "{count} target", "{count} targets");

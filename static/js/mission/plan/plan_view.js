@@ -1,15 +1,15 @@
 /** Texts and numbers of a plan for the page: letters, numbers, sentences. Values in, values out. */
 
-import { routeLetter } from "../domain/palette.js";
-import { positionAt, profileOf } from "../domain/route_profile.js";
-import { t, tn } from "../text.js";
-import { durationText, energyText, lengthText } from "../units.js";
-import { changesOf } from "./hand/hand_route.js";
-import { ordersOf, wishedOrders } from "./locks.js";
-import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
+import { routeLetter } from "../../domain/palette.js";
+import { positionAt, profileOf } from "../../domain/route_profile.js";
+import { t, tn } from "../../text.js";
+import { durationText, energyText, lengthText } from "../../units.js";
+import { changesOf } from "../hand/hand_route.js";
+import { basisOf, storedBasisOf, withoutWishes } from "../selection.js";
+import { ordersOf, wishedOrders } from "../targets/locks.js";
 
-/** @import { Plan } from "../api_types.d.ts" */
-/** @import { HandEdit, Lock, MissionPageState, MissionSelection, PickedTarget, ShownPlan, ShownRoute } from "./types.d.ts" */
+/** @import { Plan } from "../../api_types.d.ts" */
+/** @import { HandEdit, Lock, MissionPageState, MissionSelection, PickedTarget, ShownPlan, ShownRoute } from "../types.d.ts" */
 
 /** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
 
@@ -101,7 +101,7 @@ export function inPlanOrder(targets, places) {
 }
 
 /** [{ target, sentence, reason, why }] for the targets that no route visits. @param {ShownPlan | null} plan */
-export function unreachedOf(plan) {
+export function unassignedOf(plan) {
   if (!plan) return [];
   return plan.result.unassigned.map((entry) => ({
     target: plan.targets[entry.target],
@@ -285,7 +285,7 @@ export function isPlanInSight(state) {
 export function shownPlaces(state) {
   if (!isPlanInSight(state)) return { places: placesOf(null), missed: new Set() };
   const places = placesOf(state.plan, state.selection.locks);
-  const unreached = unreachedOf(state.plan).map(({ target }) => target?.key);
+  const unreached = unassignedOf(state.plan).map(({ target }) => target?.key);
   return { places, missed: new Set(unreached.filter((key) => !places.has(key))) };
 }
 

@@ -1,13 +1,13 @@
 /** Why a plan leaves targets out, by cause: what keeps them out, and which. Values in, values out. */
 
 import { t, tn } from "../../text.js";
-import { unreachedOf } from "../plan_view.js";
+import { unassignedOf } from "../plan/plan_view.js";
 
 /** @import { Unassigned } from "../../api_types.d.ts" */
 /** @import { PickedTarget, ShownPlan } from "../types.d.ts" */
 
 /** @typedef {{ name: string, id: number | null }} NamedZone */
-/** @typedef {{ target: PickedTarget, sentence: string }} LeftOut */
+/** @typedef {{ target: PickedTarget, sentence: string }} UnassignedTarget */
 /**
  * What keeps targets from every route. code: of the first reason, or of what bars every path; zone: where that is one.
  *
@@ -15,7 +15,7 @@ import { unreachedOf } from "../plan_view.js";
  * @property {string} code
  * @property {string} reason
  * @property {NamedZone | null} zone
- * @property {LeftOut[]} targets
+ * @property {UnassignedTarget[]} targets
  */
 
 const BARRIERS = ["not_connected", "barred_by_zone"]; // these stand beside "no permitted route"
@@ -31,7 +31,7 @@ function zoneOf(why) {
 export function causesOf(plan) {
   /** @type {Map<string, Cause>} */
   const causes = new Map();
-  for (const { target, reason, sentence, why } of unreachedOf(plan)) {
+  for (const { target, reason, sentence, why } of unassignedOf(plan)) {
     const zone = zoneOf(why);
     const code = why.find((one) => BARRIERS.includes(one.code))?.code ?? why[0]?.code ?? reason;
     const uav = OF_ONE_UAV.test(code) ? why[0].params.uav : null;

@@ -1,11 +1,11 @@
 /** What a box or a lasso has found: its groups, and which of it is chosen. Values in, values out. */
 
-import { t, tn } from "../text.js";
+import { t, tn } from "../../text.js";
+import { keyOf } from "../selection.js";
 import { countedByKind } from "./proposed_name.js";
-import { keyOf } from "./selection.js";
 
-/** @import { PickedAsset } from "../api_types.d.ts" */
-/** @import { PickedTarget } from "./types.d.ts" */
+/** @import { PickedAsset } from "../../api_types.d.ts" */
+/** @import { PickedTarget } from "../types.d.ts" */
 
 /** @typedef {"kind" | "line" | "voltage"} GroupName */
 /** @typedef {{ key: string, words: string, count: number }} Group */

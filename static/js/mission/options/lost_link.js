@@ -1,12 +1,12 @@
 /** Lost-link actions of UAVs, their rally points, and the result of the server's check. Values in, values out. */
 
-import { distance_m } from "../domain/geodesy.js";
-import { rallyName, routeLetter } from "../domain/palette.js";
-import { locale, t, tn } from "../text.js";
-import { durationText, exactHeightText, numberText } from "../units.js";
+import { distance_m } from "../../domain/geodesy.js";
+import { rallyName, routeLetter } from "../../domain/palette.js";
+import { locale, t, tn } from "../../text.js";
+import { durationText, exactHeightText, numberText } from "../../units.js";
 
-/** @import { FailedReturn, LostLinkCheck } from "../api_types.d.ts" */
-/** @import { LostLink, ShownPlan } from "./types.d.ts" */
+/** @import { FailedReturn, LostLinkCheck } from "../../api_types.d.ts" */
+/** @import { LostLink, ShownPlan } from "../types.d.ts" */
 
 /** @typedef {Partial<LostLink> | null | undefined} Wish */
 /** @typedef {"go-on" | "unplanned" | "unknown" | "waiting" | "home" | "lost"} CheckState */

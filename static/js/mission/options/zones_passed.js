@@ -1,10 +1,10 @@
 /** Relation of zones to a route: obstructing it, at another height, passed by, or out of force when the UAV passes. */
 
-import { isInForce } from "../domain/zones_in_force.js";
-import { t } from "../text.js";
-import { durationText, heightText } from "../units.js";
+import { isInForce } from "../../domain/zones_in_force.js";
+import { t } from "../../text.js";
+import { durationText, heightText } from "../../units.js";
 
-/** @import { Route, ZoneAlong, ZoneMargins } from "../api_types.d.ts" */
+/** @import { Route, ZoneAlong, ZoneMargins } from "../../api_types.d.ts" */
 
 /** @typedef {ZoneAlong & { kind: "met" | "apart" | "near" | "asleep" }} PassedZone */
 

@@ -1,14 +1,14 @@
 /** Comparison of two plans of one mission: the difference for each UAV, and targets that moved to another UAV. */
 
-import { distance_m } from "../domain/geodesy.js";
-import { profileOf } from "../domain/route_profile.js";
-import { t, tn } from "../text.js";
-import { durationText, lengthText } from "../units.js";
+import { distance_m } from "../../domain/geodesy.js";
+import { profileOf } from "../../domain/route_profile.js";
+import { t, tn } from "../../text.js";
+import { durationText, lengthText } from "../../units.js";
+import { keyOf, wishesOf } from "../selection.js";
 import { longestDuration_s } from "./plan_view.js";
-import { keyOf, wishesOf } from "./selection.js";
 
-/** @import { LastTarget, Plan } from "../api_types.d.ts" */
-/** @import { PickedTarget, ShortPlan, ShortRoute, ShownPlan } from "./types.d.ts" */
+/** @import { LastTarget, Plan } from "../../api_types.d.ts" */
+/** @import { PickedTarget, ShortPlan, ShortRoute, ShownPlan } from "../types.d.ts" */
 
 /**
  * A plan on the page in the short form that the server stores of the previous one: see LastPlanSerializer.
