@@ -65,6 +65,7 @@ def test_a_lasso_takes_the_towers_and_bridges_inside_it(visitor: Visitor) -> Non
     page.keyboard.press("Enter")
     expect(page.get_by_text(re.compile(r"\d+ targets? added from the area\."))).to_be_visible()
     expect(page.get_by_role("radio", name="Point")).to_be_checked()  # the tool ends with its act
+    assert page.evaluate("document.activeElement !== document.body")  # the focus is not lost with the dialog
     assert tower["properties"]["label"] in targets(page)
     page.keyboard.press("Control+z")
     expect(rows(page)).to_have_count(0)
