@@ -1,8 +1,21 @@
 """URLs of map data under /api/v1/."""
 
-from django.urls import path
+from django.urls import path, re_path
 
-from inspection.views import assets, data_issues, ground, history, imports, picking, regions, terrain, uploads, zone_sets, zones
+from inspection.views import (
+    asset_register,
+    assets,
+    data_issues,
+    ground,
+    history,
+    imports,
+    picking,
+    regions,
+    terrain,
+    uploads,
+    zone_sets,
+    zones,
+)
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -10,6 +23,10 @@ urlpatterns = [
     path("assets/<int:asset_id>/history", history.AssetHistory.as_view(), name="api-asset-history"),
     path("assets/<int:asset_id>/revert", history.AssetRevert.as_view(), name="api-asset-revert"),
     path("assets/<int:asset_id>/follow-source", history.AssetFollowSource.as_view(), name="api-asset-follow-source"),
+    path("assets/summary", asset_register.AssetCountsView.as_view(), name="api-asset-summary"),
+    path("assets/edits", asset_register.AssetEdits.as_view(), name="api-asset-edits"),
+    path("assets/edits/undo", asset_register.AssetEditsUndo.as_view(), name="api-asset-edits-undo"),
+    re_path(r"^assets/export\.(?P<ending>csv|geojson|gpkg)$", asset_register.AssetFile.as_view(), name="api-asset-file"),
     path("assets/lookup", picking.AssetLookup.as_view(), name="api-asset-lookup"),
     path("assets/within", picking.AssetsWithin.as_view(), name="api-assets-within"),
     path("assets/stretch", picking.StretchAlongLines.as_view(), name="api-stretch"),

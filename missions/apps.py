@@ -14,6 +14,9 @@ class MissionsConfig(AppConfig):
         from inspection.auto_apply_hooks import register_check  # noqa: PLC0415 (models are there by then)
 
         register_check("missions.selectors.flown_infrastructure.flown_missions_touched")
+        from inspection.inspection_hooks import register_inspections  # noqa: PLC0415
+
+        register_inspections("missions.selectors.inspections.inspections_of_assets")
         from inspection.region_hooks import register_bases, register_deletion  # noqa: PLC0415
 
         register_bases("missions.services.fleet.demo_uavs.positions_of_bases")

@@ -6,11 +6,13 @@ from django.contrib.gis.db import models
 from django.contrib.postgres.fields import ArrayField
 from django.contrib.postgres.indexes import GinIndex, OpClass
 from django.db.models import Case, F, Func, Q, Value, When
-from django.db.models.functions import Now, Upper
+from django.db.models.functions import Coalesce, Now, NullIf, Upper
 
 from inspection.models.imports import DataImport
 from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import Organisation
+
+LAST_NAME = "\U0010ffff"  # sorts after every name
 
 
 class AssetKind(models.TextChoices):
@@ -135,6 +137,13 @@ class Asset(models.Model):
                 OpClass(Upper("operator"), name="gin_trgm_ops"),
                 name="asset_text_idx",
             ),
+            models.Index(  # the register by name, those without a name last
+                Coalesce(NullIf(Upper("ref"), Value("")), NullIf(Upper("name"), Value("")), Value(LAST_NAME)),
+                "id",
+                condition=Q(vanished_at=None),
+                name="asset_register_idx",
+            ),
+            models.Index(fields=["updated_at", "id"], name="asset_updated_idx"),
         ]
 
     def __str__(self) -> str:

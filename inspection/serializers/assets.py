@@ -8,6 +8,7 @@ from rest_framework import serializers
 from inspection.models import AssetKind, AssetReference
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.assets import DrawnAsset
+from inspection.selectors.register.assets import RegisterFacts
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
 from workspace.api.external_data import AttributesField
 from workspace.jobs.serializers import Declared
@@ -28,6 +29,10 @@ class AssetPropertiesSerializer(serializers.Serializer):
     osm = serializers.CharField(allow_null=True, help_text="type and id, such as w123")
     is_flyable = serializers.BooleanField(help_text="part of the inspection graph")
     line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
+    line_label: Declared = serializers.CharField(help_text="of this line; may be empty")
+    region = serializers.IntegerField(allow_null=True, help_text="the region of its import")
+    inspected_at = serializers.DateTimeField(allow_null=True, help_text="when an aircraft of your organisation inspected it last")
+    updated_at = serializers.DateTimeField()
     centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")
     external_id = serializers.CharField(help_text="your organisation's id of it; may be empty")
     attributes = AttributesField(required=True, help_text="your organisation's own")
@@ -40,7 +45,6 @@ class AssetDetailPropertiesSerializer(AssetPropertiesSerializer):
     follows = serializers.BooleanField(help_text="there is a source whose facts can be taken again")
     asset_set = serializers.CharField(allow_null=True, help_text="the set of a file other than OpenStreetMap's")
     vanished_at = serializers.DateTimeField(allow_null=True, help_text="when an import no longer had it")
-    updated_at = serializers.DateTimeField()
     source: Declared = SourceSerializer(allow_null=True)
 
 
@@ -54,13 +58,14 @@ class AssetCollectionSerializer(collection_serializer("AssetCollection", AssetFe
 
 FIELDS_OF_AN_ASSET = (
     "kind", "subtype", "osm_type", "osm_id", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m",
-    "length_m", "is_flyable", "carries", "place_on_line", "places_on_line",
-    "line__ref", "line__name", "line__operator", "line__max_voltage_v",
+    "length_m", "is_flyable", "carries", "place_on_line", "places_on_line", "updated_at",
+    "line__kind", "line__subtype", "line__osm_type", "line__osm_id", "line__ref", "line__name", "line__operator", "line__max_voltage_v",
+    "line__line",
 )  # fmt: skip
 
 
-def asset_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[str, Any]:
-    """Return the feature. `asset` has `geometry_json` from inspection.selectors, `reference` is that of the reader's organisation."""
+def asset_feature(asset: DrawnAsset, reference: AssetReference | None, facts: RegisterFacts) -> dict[str, Any]:
+    """Return the feature. `asset` has `geometry_json` from inspection.selectors; the others are of the reader's organisation."""
     properties = {
         "kind": asset.kind,
         "subtype": asset.subtype,
@@ -76,6 +81,10 @@ def asset_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[s
         "osm": f"{asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else None,
         "is_flyable": asset.is_flyable,
         "line": asset.line_id,
+        "line_label": asset_label(asset.line) if asset.line is not None else "",
+        "region": facts.region,
+        "inspected_at": facts.inspected_at,
+        "updated_at": asset.updated_at,
         "centre": [asset.centre.x, asset.centre.y],
         "external_id": reference.external_id if reference else "",
         "attributes": reference.attributes if reference else {},
@@ -83,8 +92,8 @@ def asset_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[s
     return {"type": "Feature", "id": asset.pk, "geometry": json.loads(asset.geometry_json), "properties": properties}
 
 
-def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[str, Any]:
-    feature = asset_feature(asset, reference)
+def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None, facts: RegisterFacts) -> dict[str, Any]:
+    feature = asset_feature(asset, reference, facts)
     feature["properties"] |= {
         "tags": asset.tags,
         "revision": asset.revision,
@@ -92,7 +101,6 @@ def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None) ->
         "follows": asset.source_facts is not None,
         "asset_set": asset.asset_set and asset.asset_set.name,
         "vanished_at": asset.vanished_at,
-        "updated_at": asset.updated_at,
         "source": source_json(asset.data_import),
     }
     return feature

@@ -66,20 +66,7 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
         hold_ground()
         before = Asset.objects.select_for_update(of=["self"]).filter(pk=asset.pk).first()
         check_revision(before, expected_revision, "asset", asset.pk)
-        asset.voltages_v = sorted(set(asset.voltages_v), reverse=True)
-        asset.max_voltage_v = max(asset.voltages_v, default=None)
-        asset.centre = centre_of(asset.geometry)
-        if isinstance(asset.geometry, LineString):
-            asset.length_m = path_length_m(np.array(asset.geometry.coords))
-            asset.node_osm_ids = _osm_nodes(asset, before)
-        if before is not None and not before.is_edited and is_sourced(before):
-            asset.source_facts = asset_facts(before)
-        follows_source = asset.source_facts is not None and says_the_same(asset, asset.source_facts)
-        if asset.source_facts is not None and follows_source:
-            take_asset_facts(asset, asset.source_facts)  # including the OSM nodes of its vertices
-            asset.source_facts = None
-        asset.is_edited = not follows_source
-        if before is not None and asset_facts(before) == asset_facts(asset):
+        if not derive(asset, before):
             return asset  # saved unchanged
         asset.revision = before.revision + 1 if before else max(asset.revision, 1)
         asset.save(force_insert=before is None)
@@ -87,6 +74,24 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
         _number_supports_after(kind)
         mark_ground_changed()
     return asset
+
+
+def derive(asset: Asset, before: Asset | None) -> bool:
+    """Set what follows from geometry, voltages and source of a new or changed asset. Returns whether its facts differ from before."""
+    asset.voltages_v = sorted(set(asset.voltages_v), reverse=True)
+    asset.max_voltage_v = max(asset.voltages_v, default=None)
+    asset.centre = centre_of(asset.geometry)
+    if isinstance(asset.geometry, LineString):
+        asset.length_m = path_length_m(np.array(asset.geometry.coords))
+        asset.node_osm_ids = _osm_nodes(asset, before)
+    if before is not None and not before.is_edited and is_sourced(before):
+        asset.source_facts = asset_facts(before)
+    follows_source = asset.source_facts is not None and says_the_same(asset, asset.source_facts)
+    if asset.source_facts is not None and follows_source:
+        take_asset_facts(asset, asset.source_facts)  # including the OSM nodes of its vertices
+        asset.source_facts = None
+    asset.is_edited = not follows_source
+    return before is None or asset_facts(before) != asset_facts(asset)
 
 
 def delete_asset(*, asset: Asset, actor: User, expected_revision: int | None = None) -> None:

@@ -10,6 +10,7 @@ from rest_framework.views import APIView
 from inspection import selectors
 from inspection.models import Asset, AssetKind
 from inspection.selectors.assets import DrawnAsset
+from inspection.selectors.register.assets import RegisterFacts, assets_that_match, in_order, register_facts
 from inspection.serializers.assets import (
     FIELDS_OF_AN_ASSET,
     AssetCollectionSerializer,
@@ -20,13 +21,12 @@ from inspection.serializers.edits import AssetInputSerializer
 from inspection.services import delete_asset, save_asset
 from inspection.services.curation import REFERENCE_FIELDS, save_asset_reference
 from inspection.views.edits import Curated, answer, asset_now, with_values
-from inspection.views.parameters import BOX, box_of, kinds_of, text_of
-from workspace.api.external_data import EXTERNAL_ID, asked_external_id
+from inspection.views.register_filters import ASSET_FILTERS, SORT, SORTS, asset_filter
 from workspace.api.idempotency import idempotent
-from workspace.api.paging import asked_flag, changed_since, page_of
+from workspace.api.paging import asked_choice, asked_flag, changed_since, page_of
 from workspace.api.permissions import CURATORS
 from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS
-from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, several_of
+from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
@@ -55,13 +55,8 @@ class AssetList(APIView):
         operation_id="list_assets",
         summary="Assets: towers, lines, railways, bridges",
         parameters=[
-            BOX,
-            OpenApiParameter(
-                "kind", several_of(AssetKind.values), description=f"one or several of {', '.join(AssetKind.values)}, with commas"
-            ),
-            OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123; best first'),
-            OpenApiParameter("flyable", bool, description="true: only what may be flown to"),
-            EXTERNAL_ID,
+            *ASSET_FILTERS,
+            SORT,
             OpenApiParameter("total", bool, description="true: also how many there are, on all pages"),
             CHANGED_SINCE,
             *PAGE_PARAMETERS,
@@ -69,16 +64,18 @@ class AssetList(APIView):
         responses=AssetCollectionSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        text, external_id = text_of(request), asked_external_id(request)
-        flyable = True if asked_flag(request, "flyable") else None
-        found = selectors.assets_on_the_ground(box=box_of(request), kinds=kinds_of(request), text=text, flyable=flyable)
-        found = changed_since(request, found)
-        if external_id:
-            found = selectors.with_external_id(found, request.user.organisation_id, external_id)
+        wanted, organisation = asset_filter(request), request.user.organisation_id
+        found = changed_since(request, assets_that_match(wanted))
         assets = found.only(*FIELDS_OF_AN_ASSET)
-        page = page_of(request, with_match_rank(assets, text=text), order=BEST_FIRST) if text else page_of(request, assets)
-        references = selectors.references_of(request.user.organisation_id, [asset.pk for asset in page.rows])
-        features = [asset_feature(asset, references.get(asset.pk)) for asset in page.rows]
+        order: tuple[str, ...] = ("pk",)
+        if sort := asked_choice(request, "sort", SORTS):
+            assets, order = in_order(assets, sort, organisation)
+        elif wanted.text:
+            assets, order = with_match_rank(assets, text=wanted.text), BEST_FIRST
+        page = page_of(request, assets, order=order)
+        keys = [asset.pk for asset in page.rows]
+        references, facts = selectors.references_of(organisation, keys), register_facts(organisation, keys)
+        features = [asset_feature(asset, references.get(asset.pk), facts.get(asset.pk, RegisterFacts())) for asset in page.rows]
         total = {"total": found.count()} if asked_flag(request, "total") else {}
         return Response({"type": "FeatureCollection", "features": features, "next": page.next} | total)
 

@@ -429,6 +429,19 @@ export interface components {
             /** @description on all pages; where it was asked for */
             total?: number;
         };
+        /** @description Numbers of assets. Those of a fact disregard the filter by this fact, so that another value can be chosen. */
+        AssetCounts: {
+            /** @description that match all filters */
+            total: number;
+            /** @description by kind */
+            kinds: {
+                [key: string]: number;
+            };
+            /** @description highest first; an asset of several voltages counts at each */
+            voltages: components["schemas"]["VoltageCount"][];
+            /** @description the 200 with most assets */
+            operators: components["schemas"]["OperatorCount"][];
+        };
         AssetDetailFeature: {
             type: components["schemas"]["FeatureType"];
             id: number;
@@ -461,6 +474,17 @@ export interface components {
             is_flyable: boolean;
             /** @description of a support: the line of the highest voltage that it carries */
             line: number | null;
+            /** @description of this line; may be empty */
+            line_label: string;
+            /** @description the region of its import */
+            region: number | null;
+            /**
+             * Format: date-time
+             * @description when an aircraft of your organisation inspected it last
+             */
+            inspected_at: string | null;
+            /** Format: date-time */
+            updated_at: string;
             /** @description lon, lat */
             centre: number[];
             /** @description your organisation's id of it; may be empty */
@@ -486,8 +510,6 @@ export interface components {
              * @description when an import no longer had it
              */
             vanished_at: string | null;
-            /** Format: date-time */
-            updated_at: string;
             source: components["schemas"]["Source"] | null;
         };
         AssetFeature: {
@@ -554,6 +576,17 @@ export interface components {
             is_flyable: boolean;
             /** @description of a support: the line of the highest voltage that it carries */
             line: number | null;
+            /** @description of this line; may be empty */
+            line_label: string;
+            /** @description the region of its import */
+            region: number | null;
+            /**
+             * Format: date-time
+             * @description when an aircraft of your organisation inspected it last
+             */
+            inspected_at: string | null;
+            /** Format: date-time */
+            updated_at: string;
             /** @description lon, lat */
             centre: number[];
             /** @description your organisation's id of it; may be empty */
@@ -772,6 +805,40 @@ export interface components {
         };
         BrowserSessionList: {
             results: components["schemas"]["BrowserSession"][];
+        };
+        BulkEditOutput: {
+            /** @description assets that differ now */
+            changed: number;
+            /** @description of the history; with them the edit is undone */
+            entries: number[];
+        };
+        /** @description Either `ids`, or the filters in the address with the number of assets that they find. */
+        BulkEditRequest: {
+            ids?: number[];
+            /** @description of the filters: 409 if they find another number by now */
+            expected?: number;
+            values: components["schemas"]["BulkValuesRequest"];
+        };
+        BulkUndoOutput: {
+            undone: number;
+            /** @description changed again since, or gone */
+            kept: number;
+        };
+        BulkUndoRequest: {
+            entries: number[];
+        };
+        BulkValuesRequest: {
+            operator?: string;
+            /** @description of supports and power lines */
+            voltages_v?: number[];
+            /** @description of power lines */
+            circuits?: number | null;
+            /**
+             * Format: double
+             * @description of supports and bridges
+             */
+            height_m?: number | null;
+            is_flyable?: boolean;
         };
         ChangeCollection: {
             type: components["schemas"]["FeatureCollectionType"];
@@ -3490,6 +3557,10 @@ export interface components {
             /** @description its place in the mission */
             target: number;
             reason: string;
+        };
+        OperatorCount: {
+            operator: string;
+            count: number;
         };
         /** @description One's organisation. */
         Organisation: {
@@ -7530,6 +7601,10 @@ export interface components {
         VerificationMail: {
             was_mailed: boolean;
         };
+        VoltageCount: {
+            voltage_v: number;
+            count: number;
+        };
         WaitingCommand: {
             /** Format: uuid */
             id: string;
@@ -8045,6 +8120,7 @@ export type ApproveInputRequest = components['schemas']['ApproveInputRequest'];
 export type Assessment = components['schemas']['Assessment'];
 export type AssessmentLevel = components['schemas']['AssessmentLevel'];
 export type AssetCollection = components['schemas']['AssetCollection'];
+export type AssetCounts = components['schemas']['AssetCounts'];
 export type AssetDetailFeature = components['schemas']['AssetDetailFeature'];
 export type AssetDetailProperties = components['schemas']['AssetDetailProperties'];
 export type AssetFeature = components['schemas']['AssetFeature'];
@@ -8068,6 +8144,11 @@ export type BlockingZone = components['schemas']['BlockingZone'];
 export type BridgesOutput = components['schemas']['BridgesOutput'];
 export type BrowserSession = components['schemas']['BrowserSession'];
 export type BrowserSessionList = components['schemas']['BrowserSessionList'];
+export type BulkEditOutput = components['schemas']['BulkEditOutput'];
+export type BulkEditRequest = components['schemas']['BulkEditRequest'];
+export type BulkUndoOutput = components['schemas']['BulkUndoOutput'];
+export type BulkUndoRequest = components['schemas']['BulkUndoRequest'];
+export type BulkValuesRequest = components['schemas']['BulkValuesRequest'];
 export type ChangeCollection = components['schemas']['ChangeCollection'];
 export type ChangeFeature = components['schemas']['ChangeFeature'];
 export type ChangeProperties = components['schemas']['ChangeProperties'];
@@ -8278,6 +8359,7 @@ export type ObjectiveEnum = components['schemas']['ObjectiveEnum'];
 export type Offer = components['schemas']['Offer'];
 export type OfferState = components['schemas']['OfferState'];
 export type OpenTargetReasonRequest = components['schemas']['OpenTargetReasonRequest'];
+export type OperatorCount = components['schemas']['OperatorCount'];
 export type Organisation = components['schemas']['Organisation'];
 export type Origin = components['schemas']['Origin'];
 export type OriginEnum = components['schemas']['OriginEnum'];
@@ -8536,6 +8618,7 @@ export type VehicleReport = components['schemas']['VehicleReport'];
 export type VehicleText = components['schemas']['VehicleText'];
 export type VehicleTextPage = components['schemas']['VehicleTextPage'];
 export type VerificationMail = components['schemas']['VerificationMail'];
+export type VoltageCount = components['schemas']['VoltageCount'];
 export type WaitingCommand = components['schemas']['WaitingCommand'];
 export type WaitingStart = components['schemas']['WaitingStart'];
 export type Warning = components['schemas']['Warning'];

@@ -1,10 +1,10 @@
 """Records as comma-separated values (RFC 4180), one line each, with units in the column names."""
 
 import csv
-import re
 from collections.abc import Iterable, Iterator
 from io import StringIO
 
+from inspection.exporters.spreadsheet_cells import without_formula
 from telemetry.exports.logged_record import FLAGS, REPORTED, LoggedRecord, Value, time_text
 
 COLUMNS = (
@@ -12,8 +12,6 @@ COLUMNS = (
     *REPORTED, *FLAGS,
 )  # fmt: skip
 LINES_A_PIECE = 500
-# Spreadsheets read a cell as a formula if it begins so, also after blanks and in full width. A semicolon as separator begins a cell.
-_FORMULA = re.compile(r"^(?=[\t\r])|(?:^|(?<=[;\t\r\n]))(?=[\s\u200b\ufeff]*[=+\-@\uff1d\uff0b\uff0d\uff20])")
 
 
 def csv_pieces(records: Iterable[LoggedRecord]) -> Iterator[str]:
@@ -36,8 +34,3 @@ def _cell(value: Value) -> Value:
     if isinstance(value, bool):
         return "true" if value else "false"
     return without_formula(value) if isinstance(value, str) else value
-
-
-def without_formula(value: str) -> str:
-    """Return the text in a form that no spreadsheet reads as a formula."""
-    return _FORMULA.sub("'", value)

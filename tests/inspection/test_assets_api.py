@@ -53,6 +53,10 @@ def test_an_asset_is_a_geojson_feature(client: Client) -> None:
                 "osm": "w7",
                 "is_flyable": True,
                 "line": None,
+                "line_label": "",
+                "region": None,
+                "inspected_at": None,
+                "updated_at": collection["features"][0]["properties"]["updated_at"],
                 "centre": [10.0, 56.0],
                 "external_id": "",
                 "attributes": {},
@@ -237,11 +241,11 @@ def test_a_list_reads_all_lines_of_its_supports_at_once(client: Client, django_a
     for place in range(1, 6):
         tower((10.0 + place / 100, 56.0), line=line(operator="AEP", voltages_v=[138_000]), place_on_line=place, places_on_line=9)
     client.get("/api/v1/account")  # once a minute it is noted that somebody was here
-    with django_assert_num_queries(4):  # session, user, assets, what the organisation keeps with them
+    with django_assert_num_queries(6):  # session, user, assets, what the organisation keeps with them, inspections, regions
         answer = client.get("/api/v1/assets?kind=tower").json()
     names = [(feature["properties"]["label"], feature["properties"]["detail"]) for feature in answer["features"]]
     assert names == [(f"Tower {place} of 9", "138 kV AEP") for place in range(1, 6)]
-    with django_assert_num_queries(4):
+    with django_assert_num_queries(6):
         client.get(f"/api/v1/assets/{answer['features'][0]['id']}")
 
 

@@ -144,8 +144,9 @@ def _field(queryset: QuerySet[Any], name: str) -> Any:
 def _cursor_of(queryset: QuerySet[Any], row: Model, order: tuple[str, ...]) -> str:
     values = []
     for name in order:
-        field = _field(queryset, name)
-        values.append(str(getattr(row, name.removeprefix("-"))) if field.name is None else field.value_to_string(row))
+        plain = name.removeprefix("-")
+        is_annotation = plain in queryset.query.annotations  # whose output field may be that of a column
+        values.append(str(getattr(row, plain)) if is_annotation else _field(queryset, name).value_to_string(row))
     return _encoded(values)
 
 

@@ -1,0 +1,1 @@
+"""Assets and zones as files."""

@@ -1,0 +1,1 @@
+"""The registers of assets and zones: filters, orders and counts."""

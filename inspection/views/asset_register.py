@@ -1,0 +1,181 @@
+"""The register of assets: counts, files, and edits of many at once."""
+
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from django.http import FileResponse, HttpResponseBase, StreamingHttpResponse
+from django.utils import timezone
+from django.utils.translation import gettext as _
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.exporters.geopackage import write_geopackage
+from inspection.exporters.rows import Columns, ExportRow
+from inspection.exporters.text_files import csv_pieces, geojson_pieces
+from inspection.models import Asset, AssetKind
+from inspection.selectors import references_of
+from inspection.selectors.register.assets import AssetFilter, RegisterFacts, assets_that_match, counts_that_match, register_facts
+from inspection.serializers.assets import FIELDS_OF_AN_ASSET, asset_feature
+from inspection.serializers.register import (
+    MAX_BULK,
+    AssetCountsSerializer,
+    BulkEditOutputSerializer,
+    BulkEditSerializer,
+    BulkUndoOutputSerializer,
+    BulkUndoSerializer,
+)
+from inspection.services.bulk_edits import change_assets, undo_changes
+from inspection.views.parameters import invalid
+from inspection.views.register_filters import ASSET_FILTERS, asset_filter
+from workspace.api.errors import ApiProblem
+from workspace.api.permissions import CURATORS
+from workspace.api.renderers import OneAnswer
+from workspace.api.signed_in import SignedInRequest
+
+MAX_EXPORTED = 200_000  # as many as a file of assets may bring in
+BATCH = 2_000
+KINDS_WITH = {
+    "voltages_v": {AssetKind.TOWER, AssetKind.LINE},
+    "circuits": {AssetKind.LINE},
+    "height_m": {AssetKind.TOWER, AssetKind.BRIDGE},
+}
+LAYERS = {AssetKind.TOWER: "towers", AssetKind.LINE: "lines", AssetKind.RAILWAY: "railways", AssetKind.BRIDGE: "bridges"}
+COLUMNS: Columns = {
+    "kind": "TEXT", "subtype": "TEXT", "label": "TEXT", "name": "TEXT", "ref": "TEXT", "operator": "TEXT", "voltages_v": "TEXT",
+    "circuits": "INTEGER", "height_m": "REAL", "length_m": "REAL", "is_flyable": "BOOLEAN", "line_label": "TEXT", "osm": "TEXT",
+    "external_id": "TEXT", "inspected_at": "DATETIME",
+}  # fmt: skip
+MEDIA_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json", "gpkg": "application/geopackage+sqlite3"}
+FORMAT = OpenApiParameter("ending", str, OpenApiParameter.PATH, enum=[*MEDIA_TYPES], description="how the file ends")
+FILES: dict[Any, Any] = {(200, kind.partition(";")[0]): OpenApiTypes.BINARY for kind in MEDIA_TYPES.values()}
+
+
+class AssetCountsView(APIView):
+    @extend_schema(
+        operation_id="count_assets",
+        summary="How many assets match filters, by kind, voltage and operator",
+        parameters=ASSET_FILTERS,
+        responses=AssetCountsSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        counts = counts_that_match(asset_filter(request))
+        return Response(
+            {
+                "total": counts.total,
+                "kinds": counts.kinds,
+                "voltages": [{"voltage_v": voltage, "count": count} for voltage, count in counts.voltages_v],
+                "operators": [{"operator": operator, "count": count} for operator, count in counts.operators],
+            }
+        )
+
+
+class AssetFile(APIView):
+    content_negotiation_class = OneAnswer
+    throttle_scope = "exports"
+
+    @extend_schema(
+        operation_id="export_assets",
+        summary="Assets that match filters, as CSV, GeoJSON or GeoPackage",
+        description="CSV has a position, the others the geometry. A GeoPackage has one layer for each kind.",
+        parameters=[FORMAT, *ASSET_FILTERS],
+        responses=FILES | {409: OpenApiResponse(description="Nothing or too much to export.")},
+    )
+    def get(self, request: SignedInRequest, ending: str) -> HttpResponseBase:
+        wanted = asset_filter(request)
+        count = assets_that_match(wanted).order_by()[: MAX_EXPORTED + 1].count()
+        if count == 0:
+            raise ApiProblem(409, "nothing_found", _("No asset matches: there is nothing to export."))
+        if count > MAX_EXPORTED:
+            most = {"most": f"{MAX_EXPORTED:,}"}
+            raise ApiProblem(409, "too_many", _("More than %(most)s assets match. Narrow the filters, such as by region.") % most)
+        return file_response(_rows(wanted), COLUMNS, ending, "assets")
+
+
+def file_response(rows: Iterator[ExportRow], columns: Columns, ending: str, stem: str) -> HttpResponseBase:
+    response: HttpResponseBase
+    if ending == "gpkg":
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / f"{stem}.gpkg"
+            write_geopackage(path, rows, columns, timezone.now())
+            response = FileResponse(path.open("rb"), content_type=MEDIA_TYPES[ending])  # an open file outlives its name
+    else:
+        pieces = csv_pieces if ending == "csv" else geojson_pieces
+        response = StreamingHttpResponse(pieces(rows, columns), content_type=MEDIA_TYPES[ending])
+    response["Content-Disposition"] = f'attachment; filename="{stem}.{ending}"'
+    response["Cache-Control"] = "private, no-cache"
+    return response
+
+
+def _rows(wanted: AssetFilter) -> Iterator[ExportRow]:
+    """Yield the assets kind by kind."""
+    found = assets_that_match(wanted).only(*FIELDS_OF_AN_ASSET).order_by("kind", "pk").iterator(BATCH)
+    while batch := list(islice(found, BATCH)):
+        keys = [asset.pk for asset in batch]
+        references, facts = references_of(wanted.organisation_id, keys), register_facts(wanted.organisation_id, keys)
+        for asset in batch:
+            values = asset_feature(asset, references.get(asset.pk), facts.get(asset.pk, RegisterFacts()))["properties"]
+            inspected_at = values["inspected_at"]
+            stated = {name: values[name] for name in COLUMNS} | {
+                "voltages_v": ";".join(map(str, values["voltages_v"])),
+                "inspected_at": inspected_at and inspected_at.isoformat().replace("+00:00", "Z"),
+            }
+            layer = LAYERS[AssetKind(asset.kind)]
+            yield ExportRow(layer, asset.pk, asset.geometry_json, asset.centre.x, asset.centre.y, stated)
+
+
+class AssetEdits(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="change_assets",
+        summary="Correct facts of many assets at once",
+        description="All or none. Each asset has its entry in the history, and imports leave it alone as after a correction by itself.",
+        parameters=ASSET_FILTERS,
+        request=BulkEditSerializer,
+        responses={200: BulkEditOutputSerializer, 409: OpenApiResponse(description="The filters find another number by now.")},
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = BulkEditSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        values = body.validated_data["values"]
+        keys = self._keys(request, body.validated_data)
+        self._check_kinds(keys, values)
+        entries = change_assets(keys=keys, values=values, actor=request.user)
+        return Response({"changed": len(entries), "entries": entries})
+
+    def _keys(self, request: SignedInRequest, asked: dict[str, Any]) -> list[int]:
+        if "ids" in asked:
+            return list(dict.fromkeys(asked["ids"]))
+        keys = list(assets_that_match(asset_filter(request)).order_by().values_list("pk", flat=True)[: MAX_BULK + 1])
+        if len(keys) != asked["expected"]:
+            message = _("The filters find another number of assets by now. Nothing was changed.")
+            raise ApiProblem(409, "changed", message, details={"found": len(keys)})
+        return keys
+
+    def _check_kinds(self, keys: list[int], values: dict[str, Any]) -> None:
+        kinds = {AssetKind(kind) for kind in Asset.objects.filter(pk__in=keys).order_by().values_list("kind", flat=True).distinct()}
+        for name, known in KINDS_WITH.items():
+            if name in values and not kinds <= known:
+                raise invalid(name, _("Not all of these assets have this fact. Choose one kind."))
+
+
+class AssetEditsUndo(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="undo_asset_changes",
+        summary="Take a correction of many assets back",
+        description="Assets that were changed again since stay as they are.",
+        request=BulkUndoSerializer,
+        responses=BulkUndoOutputSerializer,
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = BulkUndoSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        found = undo_changes(entries=set(body.validated_data["entries"]), actor=request.user)
+        return Response({"undone": found.undone, "kept": found.kept})

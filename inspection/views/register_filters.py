@@ -1,0 +1,59 @@
+"""Query parameters of the register of assets."""
+
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter
+
+from inspection.models import AssetKind
+from inspection.selectors.register.assets import ORDERS, AssetFilter
+from inspection.serializers.edits import HIGHEST_VOLTAGE_V, MAX_VOLTAGES
+from inspection.views.parameters import BOX, box_of, invalid, kinds_of, text_of
+from workspace.api.external_data import EXTERNAL_ID, asked_external_id
+from workspace.api.paging import asked_flag, asked_instant
+from workspace.api.schema import DAY_OR_TIME, several_of
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
+
+MAX_OPERATOR_LENGTH = 255
+LINE = WholeNumber("line", "the id of a power line: its supports")
+REGION = WholeNumber("region", "the id of a region: what imports brought into it")
+VOLTAGE = WholeNumber(
+    "voltage_v", "volts of the asset, or of its line where it states none", maximum=HIGHEST_VOLTAGE_V, max_values=MAX_VOLTAGES
+)
+SORTS = (*ORDERS, *(f"-{name}" for name in ORDERS))
+SORT = OpenApiParameter("sort", str, enum=SORTS, description='by this fact; "-" before it: the largest, last or newest first')
+ASSET_FILTERS = [
+    BOX,
+    OpenApiParameter("kind", several_of(AssetKind.values), description=f"one or several of {', '.join(AssetKind.values)}, with commas"),
+    OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123; best first'),
+    OpenApiParameter("flyable", bool, description="true: only what may be flown to"),
+    VOLTAGE.documented,
+    OpenApiParameter("operator", str, description="of the asset, or of its line where it states none"),
+    LINE.documented,
+    REGION.documented,
+    OpenApiParameter("inspected", bool, description="false: only what an aircraft of your organisation has never inspected"),
+    OpenApiParameter("inspected_from", DAY_OR_TIME, description="inspected last at this time or later"),
+    OpenApiParameter("inspected_before", DAY_OR_TIME, description="inspected last before this time"),
+    EXTERNAL_ID,
+]
+
+
+def asset_filter(request: SignedInRequest) -> AssetFilter:
+    """Return the filter of a request. Raises ApiProblem 400."""
+    operator = request.query_params.get("operator", "")
+    if len(operator) > MAX_OPERATOR_LENGTH or "\0" in operator:
+        raise invalid("operator", _("At most %(most)s printable characters.") % {"most": MAX_OPERATOR_LENGTH})
+    return AssetFilter(
+        organisation_id=request.user.organisation_id,
+        box=box_of(request),
+        kinds=tuple(kinds_of(request)),
+        text=text_of(request),
+        flyable=True if asked_flag(request, "flyable") else None,
+        external_id=asked_external_id(request),
+        voltages_v=tuple(VOLTAGE.all_asked(request)),
+        operator=operator,
+        line=LINE.asked(request),
+        region=REGION.asked(request),
+        inspected=asked_flag(request, "inspected"),
+        inspected_from=asked_instant(request, "inspected_from"),
+        inspected_before=asked_instant(request, "inspected_before"),
+    )
