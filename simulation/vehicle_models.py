@@ -105,7 +105,7 @@ class SimulatedVehicle(models.Model):
             models.UniqueConstraint(fields=["uav"], condition=Q(state__in=PRESENT), name="simulated_vehicle_one_a_uav"),
             models.UniqueConstraint(fields=["port"], condition=Q(state__in=PRESENT), name="simulated_vehicle_one_a_port"),
             models.CheckConstraint(condition=Q(state__in=SimulationState.values), name="simulated_vehicle_state_known"),
-            models.CheckConstraint(condition=Q(flavour__in=SimulatedAutopilotType.values), name="simulated_vehicle_flavour_known"),
+            models.CheckConstraint(condition=Q(autopilot_type__in=SimulatedAutopilotType.values), name="simulated_vehicle_flavour_known"),
         ]
 
     def __str__(self) -> str:

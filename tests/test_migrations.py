@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from django.apps import apps
+from django.core.checks import run_checks
 from django.db import migrations, models
 
 from tests.migration_rule import faults
@@ -76,3 +77,8 @@ def test_what_a_released_version_no_longer_used_may_go() -> None:
     operation = migrations.RemoveField("uav", "name")
     assert faults(migration(operation, UNUSED_SINCE="1.0.0"), ["1.0.0"]) == []
     assert faults(migration(operation, UNUSED_SINCE="9.9.9"), ["1.0.0"]) == ["UNUSED_SINCE names 9.9.9, which is not released yet"]
+
+
+@pytest.mark.django_db
+def test_the_checks_that_migrate_runs_find_nothing() -> None:
+    assert [str(fault) for fault in run_checks(databases=["default"]) if fault.is_serious()] == []
