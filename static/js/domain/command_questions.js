@@ -52,7 +52,7 @@ import {
  * @property {QuestionField | null | false} [field]
  * @property {QuestionField | null} [option] a second field, which may stay empty
  * @property {QuestionChoices | null} [choices]
- * @property {{ name: string, words: string }[]} [checks] done with the act unless unticked
+ * @property {{ name: string, words: string, isNeeded?: boolean }[]} [checks] done with the act unless unticked; isNeeded: ticked before it
  * @property {Safer | null} [safer]
  * @property {Promise<Pick<Question, "lines" | "act" | "safer">>} [later] update of the question once more is known
  * @property {Promise<string>} [overtaken] the reason once the question is obsolete; it can then only be closed

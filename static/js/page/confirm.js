@@ -143,9 +143,14 @@ function createActs({ keep = t("Cancel"), hint = "", isDanger }, close) {
   };
 }
 
-/** @param {{ name: string, words: string }} check */
-const checkLine = ({ name, words }) =>
-  h("label", { class: "confirm-check" }, h("input", { type: "checkbox", name, checked: true }), h("span", {}, words));
+/** @param {NonNullable<Question["checks"]>[number]} check */
+const checkLine = ({ name, words, isNeeded = false }) =>
+  h(
+    "label",
+    { class: "confirm-check" },
+    h("input", { type: "checkbox", name, checked: !isNeeded, required: isNeeded }),
+    h("span", {}, words),
+  );
 
 /** @param {HTMLInputElement} input */
 const filledIn = (input) => (input.type === "number" ? input.valueAsNumber : input.value.trim());

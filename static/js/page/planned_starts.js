@@ -16,6 +16,9 @@ import { toast } from "./toast.js";
  * @property {boolean} canFly
  */
 
+export const PILOT_CHECK = t(
+  "Looked at on site: propellers and battery, take-off place, airspace and weather, radio at hand",
+);
 const POLL_MS = 2000;
 const TICK_MS = 500;
 const SHOWN_AFTER_MS = 300_000; // as the server lists them
@@ -68,24 +71,27 @@ async function tried(act, failed) {
 }
 
 /**
- * Ask for confirmation, and start them through the server; the user confirms the pilot's visual checks.
+ * Ask for confirmation, and start them through the server; the pilot's visual checks were confirmed, or are with `checked`.
  *
  * @param {string} mission
  * @param {WaitingStart[]} waiting those that are to be started
  * @param {HTMLElement} opener
- * @param {{ left: string[] }} others the reason of each UAV that is not started with them
+ * @param {{ left: string[], checked?: string[] | null }} how left: the reason of each UAV that is not started with them;
+ *   checked: lines on its checks, where the question is the place of the pilot's own
  */
-export async function beginStarts(mission, waiting, opener, { left }) {
+export async function beginStarts(mission, waiting, opener, { left, checked = null }) {
   const asked = await confirmAct({
     title: tn(waiting.length, "Start {count} UAV in planned order?", "Start {count} UAVs in planned order?"),
     lines: [
       ...orderLines(waiting),
+      ...(checked ?? []),
       left.length > 0 && t("Not started: {names}.", { names: left.join("; ") }),
       t(
         "Each start is checked against the UAVs in the air and waits where it has to. Closing this page stops nothing.",
       ),
       t("Stop, or any Hold, Return, Land or Abort of this mission ends it: no further UAV is started."),
     ],
+    checks: checked ? [{ name: "pilot_checked", words: PILOT_CHECK, isNeeded: true }] : [],
     act: t("Start in planned order"),
     image: "plane-takeoff",
     opener,

@@ -27,7 +27,7 @@ NAMES = ("Dunlin", "Ruff")
 NAME = "South belt, two by two"
 TOWERS, BESIDE_DEG = 10, 0.002
 _systems = count(201)  # of no other test, and of each run its own
-LANDS_WITHIN_MS, WORKED_OUT_WITHIN_MS = 700_000, 40_000
+LANDS_WITHIN_MS, WORKED_OUT_WITHIN_MS, UPLOADED_WITHIN_MS = 700_000, 40_000, 60_000
 
 
 @dataclass
@@ -97,6 +97,7 @@ def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
     """The pages of who started the flight and of who watches it, once another plan is offered on both."""
     pilot = opened(visitor.signs_in("opal"), f"/missions/{flight.mission}/fly")
     watcher = opened(visitor.signs_in("rory"), f"/missions/{flight.mission}/fly")
+    expect(pilot.get_by_role("button", name="Start 2 UAVs")).to_be_visible(timeout=UPLOADED_WITHIN_MS)  # a menu keeps what it was opened with
     for name in NAMES:
         starts(visitor, pilot, name)
     expect(watcher.locator("#mission-state")).to_have_text("In flight")

@@ -1,6 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { isSavedOnRequest, lackingOf, nextAct, whyNotApproved } from "../../../static/js/mission/flying/next_act.js";
+import {
+  approvedStep,
+  flyWords,
+  isDoneHere,
+  isSavedOnRequest,
+  lackingOf,
+  nextAct,
+  whyNotApproved,
+} from "../../../static/js/mission/flying/next_act.js";
 import { basisOf, EMPTY, placeTarget, requestOf, targetOf } from "../../../static/js/mission/selection.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "E401-7" }, centre: [9, 50] });
@@ -34,6 +42,23 @@ test("then to rehearse until a rehearsal of it has not failed, then to approve",
   assert.equal(nextAct({ ...state, rehearsal: rehearsal("pass", { is_outdated: true }) }), "rehearse");
   assert.equal(nextAct({ ...state, rehearsal: rehearsal("pass") }), "approve");
   assert.equal(nextAct({ ...state, rehearsal: rehearsal("warnings") }), "approve");
+});
+
+test("an approved mission is uploaded and started on its page; to connect and to simulate it leads to the page Fly", () => {
+  const row = { uav: 1, name: "Heron", place: 0, is_loaded: false, blocks: false, is_ready: false, checks: [] };
+  const step = (next_act, more = {}, is_simulated = false) =>
+    approvedStep({ uavs: [{ is_simulated }] }, { next_act, checks: [], uavs: [{ ...row, ...more }] });
+  assert.equal(approvedStep({ uavs: [] }, null), null);
+  const upload = step("upload");
+  assert.deepEqual([upload.words, isDoneHere(upload), upload.uavs], ["Upload to 1 UAV", true, [1]]);
+  const start = step("start", { is_loaded: true, is_ready: true });
+  assert.deepEqual([start.words, isDoneHere(start), start.why], ["Start 1 UAV", true, ""]);
+  assert.deepEqual([step("connect"), step("connect", {}, true)].map(isDoneHere), [false, false]);
+  assert.deepEqual([step("connect"), step("connect", {}, true), null].map(flyWords), [
+    "Fly: Connect 1 UAV",
+    "Fly in simulation",
+    "Fly",
+  ]);
 });
 
 test("what would be refused has its reason", () => {

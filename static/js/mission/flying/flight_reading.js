@@ -97,6 +97,7 @@ export function createFlightReading(store, page) {
   return {
     readCommands,
     readReturns,
+    readPreflight,
     /** Run while the page is visible. */
     watch() {
       if (!page.isFrozen) return;

@@ -1,13 +1,15 @@
-/** Acts of an operator on a planned mission: approve and revoke. Each asks for confirmation; the mission is flown on the page Fly. */
+/** Acts of an operator on a planned mission: approve, upload, start and revoke. Each asks for confirmation; the flight is led from the page Fly. */
 
 import { ApiError, freshKey, get, post, signInAddress } from "../../api.js";
 import { h } from "../../dom.js";
 import { flyersOf, isFrozen, isOnItsWay } from "../../domain/flying.js";
 import { returnOf, warningsOfAll } from "../../domain/rtl_check.js";
+import { askForUpload, checkLines, start, upload } from "../../page/before_start.js";
 import { confirmAct } from "../../page/confirm.js";
 import { t, tn } from "../../text.js";
 import { briefingOf, needsReason } from "./briefing.js";
 import { createFlightReading } from "./flight_reading.js";
+import { approvedStep } from "./next_act.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission, NearestZone, NearestZoneAnswer, Rehearsal, RehearsalPage } from "../../api_types.d.ts" */
@@ -22,7 +24,7 @@ import { createFlightReading } from "./flight_reading.js";
  * @param {{ failed: MissionContext["failed"], page: Pick<MissionPageData, "isFrozen"> }} options
  */
 export function createFlying(store, { failed, page }) {
-  const { readCommands, readReturns, watch } = createFlightReading(store, page);
+  const { readCommands, readReturns, readPreflight, watch } = createFlightReading(store, page);
   const acting = { store, failed, readCommands };
 
   // Approved missions are read-only, others are not: the page is reloaded for either.
@@ -36,6 +38,11 @@ export function createFlying(store, { failed, page }) {
       await approve(acting, rehearsals, nearest);
     },
     revoke: () => revoke(acting),
+    /** Upload, then start. @param {HTMLElement} opener */
+    async next(opener) {
+      await next(acting, opener);
+      await readPreflight();
+    },
     watch,
   };
 }
@@ -154,6 +161,18 @@ async function approve(acting, rehearsals, nearest) {
     );
     store.update({ mission: data });
   });
+}
+
+/** @param {Acting} acting @param {HTMLElement} opener */
+async function next(acting, opener) {
+  const { mission, preflight, isDispatching } = acting.store.state;
+  const step = mission && approvedStep(mission, preflight);
+  if (!preflight || !step || step.why || isDispatching) return;
+  if (step.act === "upload") {
+    const heights = await askForUpload(preflight, step, opener);
+    if (heights) await tried(acting, t("Not sent."), () => upload(mission.id, heights));
+  } else if (step.act === "start")
+    await tried(acting, t("Not started."), () => start(mission.id, step, opener, checkLines(preflight, step)));
 }
 
 /** @param {Acting} acting */

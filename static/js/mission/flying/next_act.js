@@ -1,9 +1,12 @@
-/** The act that comes next for a mission that can be planned, and why it would be refused. Values in, values out. */
+/** The act that comes next for a mission, from plan to start, and why it would be refused. Values in, values out. */
 
+import { nextStep } from "../../domain/preflight_step.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, isUnsaved, routesOf } from "../plan/plan_view.js";
 import { rehearsalOfPlan } from "./briefing.js";
 
+/** @import { Mission, Preflight } from "../../api_types.d.ts" */
+/** @import { NextStep } from "../../domain/preflight_step.js" */
 /** @import { MissionPageState, MissionSelection } from "../types.d.ts" */
 
 /** @typedef {"plan" | "rehearse" | "approve"} NextAct */
@@ -55,3 +58,21 @@ export function whyNotRehearsed(state) {
 
 /** Whether a new mission is stored only on request: a stored one saves itself, a new one with its first plan. @param {MissionPageState} state */
 export const isSavedOnRequest = (state) => !state.mission && isUnsaved(state) && (!state.plan || !isPlanCurrent(state));
+
+/**
+ * What comes after the approval; null where nothing is left, or before the checks are read.
+ *
+ * @param {Pick<Mission, "uavs">} mission
+ * @param {Preflight | null} preflight
+ */
+export const approvedStep = ({ uavs }, preflight) =>
+  preflight && nextStep(preflight, true, uavs.every(({ is_simulated }) => is_simulated) ? "off" : null);
+
+/** Upload and start are done on the mission's page; to connect and to simulate are of the page Fly. @param {NextStep | null} step */
+export const isDoneHere = (step) => ["upload", "wait", "start"].includes(step?.act ?? "");
+
+/** The link to the page Fly. @param {NextStep | null} step */
+export function flyWords(step) {
+  if (step?.act === "simulate") return step.words;
+  return step ? t("Fly: {act}", { act: step.words }) : t("Fly");
+}

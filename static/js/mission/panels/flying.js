@@ -14,11 +14,11 @@ import {
   timesOf,
 } from "../../domain/flying.js";
 import { routeNumber } from "../../domain/palette.js";
-import { nextStep } from "../../domain/preflight_step.js";
 import { returnOf, returnStatus } from "../../domain/rtl_check.js";
 import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
+import { approvedStep, flyWords, isDoneHere } from "../flying/next_act.js";
 
 /** @import { Command, Mission, Preflight } from "../../api_types.d.ts" */
 /** @import { Flyer, StatusText } from "../../domain/flying.js" */
@@ -40,7 +40,9 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
   store.listen(["mission", "commands", "returns", "connections", "isDispatching", "preflight"], (state) =>
     draw(state, context),
   );
-  if (canFly) byId("revoke").addEventListener("click", () => void flying.revoke());
+  if (!canFly) return;
+  byId("revoke").addEventListener("click", () => void flying.revoke());
+  byId("next-act").addEventListener("click", () => void flying.next(byId("next-act")));
 }
 
 /** @param {MissionPageState} state @param {FlyingContext} context */
@@ -74,22 +76,18 @@ function draw({ mission, commands, isDispatching, preflight }, context) {
   if (canFly) drawFoot(mission, preflight, isDispatching);
 }
 
-/** The next act, which is done on the page Fly. @param {Preflight | null} preflight null: not read yet @param {boolean} isSimulated all its UAVs are */
-export function flyWords(preflight, isSimulated) {
-  const step = preflight && nextStep(preflight, true, isSimulated ? "off" : null);
-  if (step?.act === "simulate") return step.words;
-  return step ? t("Fly: {act}", { act: step.words }) : t("Fly");
-}
-
 /** @param {Mission} mission @param {Preflight | null} preflight null: not read yet @param {boolean} isBusy */
 function drawFoot(mission, preflight, isBusy) {
+  const step = isFlown(mission) ? approvedStep(mission, preflight) : null;
   const fly = byId("to-fly", HTMLAnchorElement);
-  fly.hidden = !isFlown(mission);
+  fly.hidden = !isFlown(mission) || isDoneHere(step);
   fly.href = `/missions/${mission.id}/fly`;
-  fly.textContent = flyWords(
-    preflight,
-    mission.uavs.every(({ is_simulated }) => is_simulated),
-  );
+  fly.textContent = flyWords(step);
+  const next = byId("next-act", HTMLButtonElement);
+  next.hidden = !isDoneHere(step);
+  next.textContent = step?.words ?? "";
+  next.disabled = isBusy || step?.act === "wait" || Boolean(step?.why);
+  byId("why-not-next").textContent = next.hidden ? "" : (step?.why ?? "");
   const revoke = byId("revoke", HTMLButtonElement);
   revoke.hidden = !canBeRevoked(mission);
   revoke.disabled = isBusy;

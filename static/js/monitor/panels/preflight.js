@@ -1,12 +1,11 @@
 /** Before start: the checks of each UAV, what only a pilot can see, and one button that names the next act. */
 
-import { ApiError, freshKey, get, post } from "../../api.js";
+import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
-import { KINDS } from "../../domain/flying.js";
 import { canUploadToAll, firstStep, nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
 import { parametersText } from "../../domain/rtl_check.js";
-import { commandUav } from "../../page/command_uav.js";
-import { beginStarts } from "../../page/planned_starts.js";
+import { heightsWanted, heightWords, setHeight, start, upload } from "../../page/before_start.js";
+import { PILOT_CHECK } from "../../page/planned_starts.js";
 import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { heightText } from "../../units.js";
@@ -14,7 +13,7 @@ import { heightText } from "../../units.js";
 import { flyCopy } from "./simulation.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { Mission, MissionStarts, Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
+/** @import { Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
 /** @import { StandIns } from "./simulation.js" */
 /** @import { NextStep, Stand } from "../../domain/preflight_step.js" */
 /** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
@@ -58,17 +57,6 @@ const checkRow = ({ code, state, message, detail }, remedy = null) =>
     h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message, remedy),
   );
 
-/** Whether the command was sent. @param {number} uav @param {string} name @param {number} height_m */
-async function setHeight(uav, name, height_m) {
-  try {
-    return await commandUav(uav, name, "set-return-height", { height_m });
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    toast(`${t("{act}: not sent to {name}.", { name, act: KINDS["set-return-height"] })} ${error.message}`);
-    return false;
-  }
-}
-
 /** A button that sets a height without obstructions of the RTL path. @param {UavPreflight} row @param {PreflightCheck} check */
 function heightButton({ uav, name }, { safe_height_m }) {
   if (safe_height_m === null) return null;
@@ -76,7 +64,7 @@ function heightButton({ uav, name }, { safe_height_m }) {
   const set = async ({ currentTarget }) => {
     const button = /** @type {HTMLButtonElement} */ (currentTarget);
     button.disabled = true;
-    button.disabled = await setHeight(uav, name, safe_height_m);
+    button.disabled = await setHeight({ uav, name, height_m: safe_height_m });
   };
   const words = t("Set return height to {height}", { height: heightText(safe_height_m) });
   return h("button", { type: "button", class: "button small", onclick: set }, icon("rotate-ccw", "small"), words);
@@ -98,7 +86,7 @@ function createPanel(place, on) {
     "label",
     { class: "preflight-tick", hidden: true },
     h("input", { type: "checkbox", id: "pilot-checked", onchange: ticked }),
-    h("span", {}, t("Looked at on site: propellers and battery, take-off place, airspace and weather, radio at hand")),
+    h("span", {}, PILOT_CHECK),
   );
   const heights = h("div", { class: "preflight-heights" });
   const button = h("button", { type: "button", class: "button primary wide", onclick: () => void on.act(button) });
@@ -159,20 +147,15 @@ function createPanel(place, on) {
 }
 
 /** Heights that are set with the upload unless they are unticked. @param {HTMLElement} place @param {Preflight} preflight */
-function drawHeights(place, { next_act, uavs }) {
+function drawHeights(place, preflight) {
   const unticked = new Set(
     [...place.querySelectorAll("input")].filter(({ checked }) => !checked).map(({ value }) => value),
   );
   const since_ms = new Map(
     [...place.querySelectorAll("input")].map(({ value, dataset }) => [`${value} ${dataset.height}`, dataset.since_ms]),
   );
-  const rows = next_act === "upload" ? uavs.filter(({ is_loaded }) => !is_loaded) : [];
-  const wanted = rows.flatMap(({ uav, name, checks }) => {
-    const height_m = checks.find(({ safe_height_m }) => safe_height_m !== null)?.safe_height_m ?? null;
-    return height_m === null ? [] : [{ uav, name, height_m }];
-  });
   place.replaceChildren(
-    ...wanted.map(({ uav, name, height_m }) =>
+    ...heightsWanted(preflight).map(({ uav, name, height_m }) =>
       h(
         "label",
         { class: "preflight-tick" },
@@ -184,14 +167,7 @@ function drawHeights(place, { next_act, uavs }) {
           "data-height": `${height_m}`,
           "data-since_ms": since_ms.get(`${uav} ${height_m}`) ?? `${Date.now()}`,
         }),
-        h(
-          "span",
-          {},
-          t("Also set the return altitude of {name} to {height}: lower, its return path is obstructed", {
-            name,
-            height: heightText(height_m),
-          }),
-        ),
+        h("span", {}, heightWords({ uav, name, height_m })),
       ),
     ),
   );
@@ -370,11 +346,7 @@ class BeforeStart {
 
   #upload() {
     const heights = this.#panel.heights();
-    const does = async () => {
-      await upload(this.#mission);
-      for (const { uav, name, height_m } of heights) await setHeight(uav, name, height_m);
-    };
-    return this.#doing(t("The upload is being prepared."), does, t("Not sent."));
+    return this.#doing(t("The upload is being prepared."), () => upload(this.#mission, heights), t("Not sent."));
   }
 
   /** @param {HTMLElement} button */
@@ -390,18 +362,4 @@ class BeforeStart {
         t("Not started."),
       );
   }
-}
-
-/** Upload to all UAVs without a mission; of the revision that was just read. @param {string} mission */
-async function upload(mission) {
-  const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission}`));
-  const headers = { "If-Match": `"${data.revision}"`, "Idempotency-Key": freshKey() };
-  await post(`/missions/${mission}/dispatch`, {}, { headers });
-}
-
-/** Those that are ready, in planned order. @param {string} mission @param {NextStep} step @param {HTMLElement} opener */
-async function start(mission, { uavs, left }, opener) {
-  const { data } = /** @type {Answer<MissionStarts>} */ (await get(`/missions/${mission}/planned-starts`));
-  const waiting = data.waiting.filter(({ uav }) => uavs.includes(uav));
-  await beginStarts(mission, waiting, opener, { left });
 }
