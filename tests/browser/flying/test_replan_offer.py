@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from itertools import count
 from typing import Any
 
@@ -16,7 +17,7 @@ from tests.browser.flying.uav_by_mavlink import Autopilot
 from tests.browser.operator_map import asks, unlimited_type, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
-from tests.browser.simulated_mission import card, opened, starts
+from tests.browser.simulated_mission import card, has_nothing_open, opened, starts, until
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
 from tests.telemetry.vehicles.px4 import Px4
@@ -78,6 +79,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[Flight]:
             if entry["name"].startswith(NAME) and entry["state"] in {"dispatched", "active"}:
                 writes(page, "POST", f"/missions/{entry['id']}/abort")
         for uav in uavs:
+            until(page, partial(has_nothing_open, page, uav), "the UAV has done what it was commanded")
             writes(page, "PATCH", f"/uavs/{uav}", {"state": "retired", "name": f"Flown {uav}"})
 
 

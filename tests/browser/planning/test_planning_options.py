@@ -30,9 +30,22 @@ def strip(page: Page, uav: str) -> Locator:
 
 
 def menu_of(page: Page, target: str) -> Locator:
-    page.get_by_role("button", name=re.compile(rf"^Task, priority, UAV of {re.escape(target)}: ")).first.focus()
+    page.get_by_role("button", name=re.compile(rf"^Task, priority of {re.escape(target)}: ")).first.focus()
     page.keyboard.press("Enter")
-    return page.get_by_role("group", name=f"Task, priority, UAV: {target}", exact=True)
+    return page.get_by_role("group", name=f"Task, priority: {target}", exact=True)
+
+
+def gives(page: Page, target: str, uav: str) -> None:
+    """By the chip of its row, with the keyboard."""
+    page.get_by_role("button", name=f"UAV: any, {target}", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("group", name=f"UAV of {target}", exact=True).get_by_role("button", name=uav).focus()
+    page.keyboard.press("Enter")
+
+
+def locks(page: Page) -> Locator:
+    """The buttons of locked targets."""
+    return page.get_by_role("list", name="Targets", exact=True).get_by_role("button", name="unlock", pressed=True)
 
 
 def names_in_order(page: Page) -> list[str]:
@@ -86,7 +99,9 @@ def test_a_pill_dragged_to_another_uav_is_locked_there_and_says_what_that_costs(
 
     expect(quality).to_contain_text(re.compile(r"The change costs \d+\smin more \(\+[\d.]+\s%\)\."))
     expect(quality).to_contain_text("with the locked targets.")
-    expect(page.get_by_role("list", name="Targets", exact=True).get_by_role("img", name="Locked to Heron")).to_have_count(1)
+    expect(locks(page)).to_have_count(1)
+    expect(locks(page)).to_have_accessible_name(re.compile("Locked as target 1 of Heron: unlock$"))
+    expect(page.get_by_role("button", name=f"UAV: Heron, {given[1]}", exact=True)).to_be_visible()
     assert names_in_order(page)[0] == given[1]
     picture(page, "plan-wish-light")
     assert faults(page) == []
@@ -95,7 +110,7 @@ def test_a_pill_dragged_to_another_uav_is_locked_there_and_says_what_that_costs(
     wait_for_map(page)
     expect(quality).to_contain_text("The change costs")
     quality.get_by_role("button", name="Unlock all").click()
-    expect(page.get_by_role("img", name="Locked to Heron")).to_have_count(0)
+    expect(locks(page)).to_have_count(0)
 
 
 def test_the_order_is_changed_and_locked_by_keyboard_alone(visitor: Visitor) -> None:
@@ -112,17 +127,16 @@ def test_the_order_is_changed_and_locked_by_keyboard_alone(visitor: Visitor) -> 
     rows.locator("button.what").filter(has=page.get_by_text(first, exact=True)).focus()
     page.keyboard.press("Alt+ArrowUp")
     assert names_in_order(page)[:2] == [first, second]
-    menu = menu_of(page, first)
-    menu.get_by_role("button", name="Unlock").focus()
+    lock = page.get_by_role("button", name=f"{first}: Locked as target 1 of Heron: unlock", exact=True)
+    lock.focus()
     page.keyboard.press("Enter")
     expect(page.get_by_text(f"{first} is not locked any more.")).to_be_visible()
-    menu = menu_of(page, first)
-    menu.get_by_label("Lock to UAV").focus()
-    page.keyboard.press("K")
-    expect(page.get_by_text(f"{first} is locked to Kite.")).to_be_visible()
-    page.keyboard.press("p")
-    expect(strip(page, "Kite")).to_have_attribute("aria-label", re.compile(f"{first} \\(locked\\)"))
-    expect(page.locator("#plan-quality")).to_contain_text(re.compile("Change not planned yet|The change"))
+    expect(lock).to_have_count(0)
+    gives(page, first, "Kite")
+    expect(page.get_by_text("1 target is flown by Kite alone.")).to_be_visible()
+    expect(page.get_by_text(re.compile("^Planned again: "))).to_be_visible()
+    expect(strip(page, "Kite")).to_have_attribute("aria-label", re.compile(f"[,:] \\d+ {first}"))
+    expect(page.get_by_role("button", name=f"UAV: Kite, {first}", exact=True)).to_be_focused()
 
 
 def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor: Visitor, picture: Picture) -> None:
@@ -137,17 +151,18 @@ def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor
     expect(strip(page, "Heron")).to_have_attribute("aria-label", re.compile(r"\(locked\)\.$"))
     picture(page, "plan-wish-phone-dark")
     page.get_by_role("button", name="Unlock all").click()
-    expect(page.get_by_role("list", name="Targets", exact=True).get_by_role("img", name="Locked to Heron")).to_have_count(0)
+    expect(locks(page)).to_have_count(0)
     first, second = names_in_order(page)[:2]
     rows = page.get_by_role("list", name="Targets", exact=True)
     menu_of(page, first).get_by_label("Priority").select_option("High")
     expect(rows.get_by_role("img", name="High priority")).to_have_count(1)
-    menu = menu_of(page, second)
+    gives(page, second, "Kite")
+    menu_of(page, second)
     picture(page, "plan-wishes-phone")
     assert faults(page) == []
-    menu.get_by_label("Required UAV").select_option("Kite")
+    page.keyboard.press("Escape")
     menu_of(page, second).get_by_label("Required sensor").select_option("Corona camera")
-    expect(rows.get_by_role("listitem").filter(has_text="only Kite · needs Corona camera")).to_have_count(1)
+    expect(rows.get_by_role("listitem").filter(has_text="needs Corona camera").filter(has_text="UAV: Kite")).to_have_count(1)
     page.get_by_role("button", name="Undo").first.click()
     expect(rows).not_to_contain_text("needs Corona camera")
 
@@ -173,7 +188,7 @@ def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor
     page.reload()
     wait_for_map(page)
     expect(rows.get_by_role("img", name="High priority")).to_have_count(1)
-    expect(rows).to_contain_text("only Kite")
+    expect(rows).to_contain_text("UAV: Kite")
 
 
 @pytest.mark.long

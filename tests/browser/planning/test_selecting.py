@@ -121,7 +121,7 @@ def test_every_bridge_of_a_railway_is_picked_from_its_row(visitor: Visitor) -> N
     )
     searches(page, railway["properties"]["osm"])
     page.get_by_role("listbox").get_by_role("option").filter(has_text="section").click()
-    page.get_by_role("button", name=re.compile("^Task, priority, UAV of ")).click()
+    page.get_by_role("button", name=re.compile("^Task, priority of ")).click()
     page.get_by_role("button", name="Add every bridge of it").click()
     expect(rows(page)).to_have_count(1 + len(bridges))
     assert targets(page)[1:] == [bridge["label"] for bridge in bridges]
@@ -192,7 +192,7 @@ def shared_name(page: Page) -> tuple[str, list[str]]:
 
 
 def tasks(page: Page) -> list[str]:
-    buttons = page.get_by_role("button", name=re.compile("^Task, priority, UAV of "))
+    buttons = page.get_by_role("button", name=re.compile("^Task, priority of "))
     return [str(button.get_attribute("title")).removesuffix(". Change task, priority, UAV") for button in buttons.all()]
 
 
@@ -207,7 +207,7 @@ def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: 
     expect(rows(page)).to_have_count(4)
     assert tasks(page) == [usual] * 4
 
-    page.get_by_role("button", name=re.compile("^Task, priority, UAV of ")).first.click()
+    page.get_by_role("button", name=re.compile("^Task, priority of ")).first.click()
     page.get_by_role("button", name="Hover", exact=True).click()
     assert tasks(page) == ["Hover, 30\u00a0s", usual, usual, usual]
     page.locator("#target-list .what").nth(1).click()
@@ -225,7 +225,7 @@ def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: 
     page.reload()
     wait_for_map(page)
     assert tasks(page) == ["Hover, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
-    page.get_by_role("button", name=re.compile("^Task, priority, UAV of ")).first.click()
+    page.get_by_role("button", name=re.compile("^Task, priority of ")).first.click()
     picture(page, "select-task")
     page.get_by_role("button", name="Take photos", exact=True).click()
     assert tasks(page)[0] == usual

@@ -80,3 +80,11 @@ test("a UAV that is called otherwise in the mission is told so", (context) => {
   );
   assert.match(toasts.summary, /Heron is called Heron 2 in this mission: another UAV has its name\./);
 });
+
+test("any UAV may fly a target that was locked, once that is chosen", (context) => {
+  const page = pageWith(context, [uav(1, "Heron"), uav(2, "Kite")]);
+  page.placeTargets([targets[2].key], { uav: "Heron", index: 0 });
+  assert.equal(page.store.state.selection.locks.length, 1);
+  assert.equal(page.tieTargets([targets[2].key], null), true);
+  assert.deepEqual(page.store.state.selection.locks, []);
+});

@@ -10,7 +10,6 @@ import {
 } from "../../../static/js/mission/selection.js";
 import {
   areContrary,
-  flownBy,
   lockedHere,
   lockOf,
   ordersOf,
@@ -109,8 +108,8 @@ test("a target that the plan does not visit can be given to a UAV, and has no pl
   const short = [{ uav: "Heron", targets: ["1"] }];
   assert.equal(lockedHere(picked, short, "5"), picked);
   assert.equal(shifted(picked, short, "5", 1), picked);
-  assert.deepEqual(flownBy(picked, "5", "Kite").locks, [run("Kite", ["5"])]);
-  assert.deepEqual(wishedOrders(short, flownBy(picked, "5", "Kite").locks), [
+  assert.equal(tied(picked, ["5"], "Kite").targets[4].uav, "Kite");
+  assert.deepEqual(wishedOrders(short, [run("Kite", ["5"])]), [
     { uav: "Heron", targets: ["1"] },
     { uav: "Kite", targets: ["5"] },
   ]);
@@ -141,9 +140,10 @@ test("a UAV that is removed takes its locks and ties along", () => {
 });
 
 test("the younger of a lock and a tie stands", () => {
-  const locked = tied(flownBy(picked, "2", "Kite"), ["2"], "Heron");
+  const there = { uav: "Kite", index: 1 };
+  const locked = tied(placed(picked, ORDERS, ["2"], there), ["2"], "Heron");
   assert.equal(lockOf(locked, "2"), null);
-  const given = flownBy(locked, "2", "Kite");
+  const given = placed(locked, ORDERS, ["2"], there);
   assert.equal(given.targets[1].uav, null);
   assert.equal(tied(given, ["2"], "Kite").locks.length, 1);
 });
@@ -202,17 +202,13 @@ test("on the strip what moves stands between its neighbours, and the rest stays"
   assert.deepEqual(stopsWished([], ["7"], 0), [{ target: "7", at: 0, isMoved: true }]);
 });
 
-test("a run that was all that a UAV flies makes room for a target that is given to it", () => {
+test("a run that is all that a UAV flies takes in a target that is placed there, and stands beside another UAV's", () => {
   const whole = { ...picked, locks: [run("Heron", ["1", "2", "3"], { at_start: true, at_end: true })] };
-  assert.deepEqual(flownBy(whole, "1", "Heron").locks, [
-    run("Heron", ["2", "3"], { at_start: true }),
-    run("Heron", ["1"]),
-  ]);
-  assert.deepEqual(flownBy(whole, "5", "Heron").locks, [
-    run("Heron", ["1", "2", "3"], { at_start: true }),
-    run("Heron", ["5"]),
-  ]);
-  assert.deepEqual(flownBy(whole, "5", "Kite").locks, [...whole.locks, run("Kite", ["5"])]);
+  const ends = { at_start: true, at_end: true };
+  const at = (key, place) => placed(whole, ORDERS, [key], place).locks;
+  assert.deepEqual(at("1", { uav: "Heron", index: 2 }), [run("Heron", ["2", "3", "1"], ends)]);
+  assert.deepEqual(at("5", { uav: "Heron", index: 3 }), [run("Heron", ["1", "2", "3", "5"], ends)]);
+  assert.deepEqual(at("5", { uav: "Kite", index: 0 }), [...whole.locks, run("Kite", ["5"], { at_start: true })]);
 });
 
 test("a neighbour that is tied to another UAV, or picked no more, is not locked along", () => {
@@ -226,10 +222,9 @@ test("a neighbour that is tied to another UAV, or picked no more, is not locked 
 });
 
 test("where two UAVs have the name nothing is locked to it, and what was stays until one of them goes", () => {
-  const locked = flownBy(tied(picked, ["2"], "Heron"), "1", "Heron");
+  const locked = { ...tied(picked, ["2"], "Heron"), locks: [run("Heron", ["1"])] };
   const two = settled({ ...locked, uavs: [...locked.uavs, uav("Heron")] });
   assert.deepEqual([two.locks, two.targets[1].uav], [[run("Heron", ["1"])], "Heron"]);
-  assert.equal(flownBy(two, "3", "Heron"), two);
   assert.equal(placed(two, ORDERS, ["5"], { uav: "Heron", index: 1 }), two);
   assert.deepEqual(settled(withoutUavAt(two, 2)).locks, [run("Heron", ["1"])]);
 });
@@ -290,7 +285,6 @@ test("whatever is wished one after the other, no lock contradicts another or a t
         [one, key()].filter((each, at, all) => isPicked(now, each) && all.indexOf(each) === at),
         { uav: name(), index: below(8) },
       ),
-    flownBy: (now, one) => flownBy(now, one, name()),
     shifted: (now, one) => shifted(now, ORDERS, one, below(2) ? 1 : -1),
     lockedHere: (now, one) => lockedHere(now, ORDERS, one),
     unlocked: (now, one) => unlocked(now, one),

@@ -60,14 +60,11 @@ export function createLocking({ store, history, selection, change }) {
     shiftTarget: (key, step) => placeAs(locks.shifted(selection(), orders(), key, step), [key], uavOf(key)),
     /** @param {string} key */
     lockTarget: (key) => placeAs(locks.lockedHere(selection(), orders(), key), [key], uavOf(key)),
-    /** @param {string} key @param {string} uav */
-    giveTarget: (key, uav) =>
-      wish(locks.flownBy(selection(), key, uav), t("{target} is locked to {uav}.", { target: labelOf(key), uav })),
     /** @param {string} key */
     unlockTarget: (key) =>
       wish(locks.unlocked(selection(), key), t("{target} is not locked any more.", { target: labelOf(key) })),
     unlockAll: () => wish(withoutLocks(selection()), t("Nothing is locked any more.")),
-    /** uav: a name, or null for any. @param {string[]} keys @param {string | null} uav */
+    /** uav: a name, or null for any, which a lock does not stand against. @param {string[]} keys @param {string | null} uav */
     tieTargets(keys, uav) {
       const words =
         uav === null
@@ -75,7 +72,8 @@ export function createLocking({ store, history, selection, change }) {
           : tn(keys.length, "{count} target is flown by {uav} alone.", "{count} targets are flown by {uav} alone.", {
               uav,
             });
-      return wish(locks.tied(selection(), keys, uav), words);
+      const next = locks.tied(selection(), keys, uav);
+      return wish(uav === null ? keys.reduce(locks.unlocked, next) : next, words);
     },
   };
 }

@@ -234,23 +234,6 @@ export function placed(selection, orders, keys, { uav, index }) {
 }
 
 /**
- * A target is flown by this UAV, wherever in its order that is best. The same selection where two UAVs have the name.
- *
- * @param {MissionSelection} selection
- * @param {string} key
- * @param {string} uav
- * @returns {MissionSelection}
- */
-export function flownBy(selection, key, uav) {
-  if (!isOneUav(selection, uav)) return selection;
-  return {
-    ...selection,
-    targets: untied(selection, [key], uav),
-    locks: withLock(without(locksOf(selection), [key]), { uav, targets: [key], at_start: false, at_end: false }),
-  };
-}
-
-/**
  * One place earlier (−1) or later (1) in the order of its UAV; the same selection at an end.
  *
  * @param {MissionSelection} selection

@@ -8,7 +8,7 @@ import { MAX_HOLD_S, sensorsKnown, taskOf, wishesOf } from "../selection.js";
 import { uavsByName } from "../uavs/mission_uavs.js";
 import { lockOf, wishedPlace } from "./locks.js";
 
-/** @import { FlownOrder, MissionActions, MissionPageState, PickedTarget, Task, Wishes } from "../types.d.ts" */
+/** @import { FlownOrder, MissionActions, MissionPageState, MissionSelection, PickedTarget, Task, Wishes } from "../types.d.ts" */
 
 /** @typedef {Pick<MissionPageState, "selection" | "fleet"> & { orders: FlownOrder[] }} Known what the menu is made from */
 /** @typedef {{ icon: string, words: string, act: () => unknown }} MenuItem */
@@ -50,12 +50,16 @@ export const PRIORITIES = [
 export const priorityOf = (target) =>
   PRIORITIES.find(({ value }) => value === wishesOf(target).priority) ?? PRIORITIES[1];
 
+/** "needs LiDAR" @param {PickedTarget} target */
+export function sensorWords(target) {
+  const { sensor } = wishesOf(target);
+  return sensor && t("needs {sensor}", { sensor });
+}
+
 /** "only Heron · needs LiDAR": who may fly a target. @param {PickedTarget} target */
 export function whoMayFly(target) {
-  const { uav, sensor } = wishesOf(target);
-  return [uav !== null && t("only {uav}", { uav }), sensor && t("needs {sensor}", { sensor })]
-    .filter(Boolean)
-    .join(" · ");
+  const { uav } = wishesOf(target);
+  return [uav !== null && t("only {uav}", { uav }), sensorWords(target)].filter(Boolean).join(" · ");
 }
 
 /** @param {string[]} names @returns {[string, string][]} */
@@ -114,7 +118,8 @@ function wishChoices(targets, actions, { selection, fleet }) {
       PRIORITIES.map(({ value, words }) => [value, words]),
       (priority) => actions.setWish(keys, { priority: /** @type {Wishes["priority"]} */ (priority) }),
     ),
-    uavs.length > 0 &&
+    targets.length > 1 && // of one its row has the choice
+      uavs.length > 0 &&
       choiceOf(
         t("Required UAV"),
         wishes.map(({ uav }) => uav ?? ""),
@@ -132,33 +137,53 @@ function wishChoices(targets, actions, { selection, fleet }) {
 }
 
 /**
- * Who flies a target, and when in its order: what dragging its pill does. `orders` are the plan's: see locks.js.
+ * When a target is flown in the order of its UAV: what dragging its pill does. `orders` are the plan's: see locks.js.
  *
  * @param {PickedTarget} target
  * @param {MissionActions} actions
  * @param {Known} known
  */
-function lockChoices({ key }, actions, { selection, orders }) {
-  const lock = lockOf(selection, key);
+function placeChoices({ key }, actions, { selection, orders }) {
   const place = wishedPlace(orders, selection, key);
-  const uavs = uavsByName(selection);
-  /** @type {[string, string][]} */
-  const asPlanned = lock ? [] : [["", t("as planned")]];
-  /** @param {string} image @param {string} words @param {(key: string) => unknown} run */
-  const act = (image, words, run) => menuItem({ icon: image, words, act: () => run(key) });
+  /** @param {string} image @param {string} words @param {number} step */
+  const shift = (image, words, step) => menuItem({ icon: image, words, act: () => actions.shiftTarget(key, step) });
   return [
-    uavs.length > 0 &&
-      choiceOf(
-        t("Lock to UAV"),
-        [lock?.uav ?? ""],
-        [...asPlanned, ...namesToChoose(uavs.map(({ name }) => name))],
-        (name) => actions.giveTarget(key, name),
-      ),
-    place && place.index > 0 && act("chevron-up", t("Earlier"), () => actions.shiftTarget(key, -1)),
-    place && place.index < place.last && act("chevron-down", t("Later"), () => actions.shiftTarget(key, 1)),
-    place && act("lock", t("Lock here"), actions.lockTarget),
-    lock && act("lock-open", t("Unlock"), actions.unlockTarget),
+    place && place.index > 0 && shift("chevron-up", t("Earlier"), -1),
+    place && place.index < place.last && shift("chevron-down", t("Later"), 1),
   ].filter(Boolean);
+}
+
+/** The UAV that a target is locked or tied to; null: any. @param {PickedTarget} target @param {Pick<MissionSelection, "locks">} selection */
+export const uavOfTarget = (target, selection) => lockOf(selection, target.key)?.uav ?? wishesOf(target).uav;
+
+/**
+ * The menu that ties a target to one UAV, or to none.
+ *
+ * @param {PickedTarget} target
+ * @param {MissionActions} actions
+ * @param {MissionSelection} selection
+ */
+export function uavMenu(target, actions, selection) {
+  const chosen = uavOfTarget(target, selection);
+  const names = uavsByName(selection).map(({ name }) => name);
+  /** @param {string | null} name */
+  const choice = (name) => {
+    const choose = () => {
+      closeMenu();
+      if (name !== chosen) actions.tieTargets([target.key], name);
+    };
+    return h(
+      "button",
+      { type: "button", "aria-pressed": String(name === chosen), onclick: choose },
+      name ?? t("Any UAV"),
+      name === chosen && h("span", { class: "end" }, icon("check", "small")),
+    );
+  };
+  return h(
+    "div",
+    { class: "menu float target-menu", role: "group", "aria-label": t("UAV of {target}", { target: target.label }) },
+    [null, ...names].map(choice),
+  );
 }
 
 /**
@@ -198,11 +223,18 @@ export function targetMenu(targets, actions, known, more = []) {
     event.preventDefault();
     set({ kind: only ?? "hold", hold_s: Math.round(seconds.valueAsNumber) });
   };
-  const locking = targets.length === 1 ? lockChoices(targets[0], actions, known) : [];
+  const placing = targets.length === 1 ? placeChoices(targets[0], actions, known) : [];
   const title = targets.length === 1 ? targets[0].label : tn(targets.length, "{count} target", "{count} targets");
   return h(
     "div",
-    { class: "menu float target-menu", role: "group", "aria-label": t("Task, priority, UAV: {name}", { name: title }) },
+    {
+      class: "menu float target-menu",
+      role: "group",
+      "aria-label":
+        targets.length === 1
+          ? t("Task, priority: {name}", { name: title })
+          : t("Task, priority, UAV: {name}", { name: title }),
+    },
     h("p", { class: "caption" }, title),
     TASKS.map(({ kind, icon: sign, words }) =>
       h(
@@ -223,8 +255,8 @@ export function targetMenu(targets, actions, known, more = []) {
     h("hr", {}),
     h("p", { class: "caption" }, t("Priority and requirements")),
     wishChoices(targets, actions, known),
-    locking.length > 0 && [h("hr", {}), h("p", { class: "caption" }, t("Place in the plan"))],
-    locking,
+    placing.length > 0 && [h("hr", {}), h("p", { class: "caption" }, t("Place in the plan"))],
+    placing,
     more.length > 0 && h("hr", {}),
     more.map(menuItem),
   );

@@ -5,7 +5,15 @@ import { routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
 import { isUsualTask, nameOf, taskOf } from "../../selection.js";
 import { lockOf } from "../../targets/locks.js";
-import { priorityOf, taskIcon, taskText, taskWord, whoMayFly } from "../../targets/target_menu.js";
+import {
+  priorityOf,
+  sensorWords,
+  taskIcon,
+  taskText,
+  taskWord,
+  uavOfTarget,
+  whoMayFly,
+} from "../../targets/target_menu.js";
 
 /** @import { MissionSelection, PickedTarget } from "../../types.d.ts" */
 
@@ -18,6 +26,8 @@ import { priorityOf, taskIcon, taskText, taskWord, whoMayFly } from "../../targe
  * @property {() => void} toggle
  * @property {() => void} chooseUpTo
  * @property {(opener: HTMLElement) => void} openTask
+ * @property {(opener: HTMLElement) => void} openUav
+ * @property {() => void} turnLock
  * @property {() => void} remove
  */
 /**
@@ -29,13 +39,17 @@ import { priorityOf, taskIcon, taskText, taskWord, whoMayFly } from "../../targe
  * @property {boolean} isChosen
  * @property {boolean} canPlan
  * @property {MissionSelection} selection
+ * @property {{ uav: string, index: number } | null} wished its place in the plan with its locks
  */
 
 /** @type {Record<string, string>} */
 const ICONS = { tower: "tower", line: "line", railway: "railway", bridge: "bridge", place: "map-pin" };
 
 /** @param {PickedTarget} target @param {RowHandlers} handlers */
-export function targetRow(target, { canPlan, light, press, pressKey, toggle, chooseUpTo, openTask, remove }) {
+export function targetRow(
+  target,
+  { canPlan, light, press, pressKey, toggle, chooseUpTo, openTask, openUav, turnLock, remove },
+) {
   const row = h(
     "li",
     {
@@ -71,10 +85,26 @@ export function targetRow(target, { canPlan, light, press, pressKey, toggle, cho
         },
         icon("x", "small"),
       ),
+    canPlan && uavLine({ openUav, turnLock }),
   );
   row.addEventListener("keydown", (event) => pressKey(event, row));
   return row;
 }
+
+/** The second line: who flies it, and whether it stays there. @param {Pick<RowHandlers, "openUav" | "turnLock">} handlers */
+const uavLine = ({ openUav, turnLock }) =>
+  h(
+    "span",
+    { class: "target-uav", hidden: true },
+    h("button", {
+      type: "button",
+      class: "task-chip uav-chip",
+      "aria-haspopup": "true",
+      "aria-expanded": "false",
+      onclick: (event) => openUav(/** @type {HTMLElement} */ (event.currentTarget)),
+    }),
+    h("button", { type: "button", class: "icon-button tight lock", onclick: turnLock }),
+  );
 
 /** @param {PickedTarget} target @param {Pick<RowHandlers, "toggle" | "chooseUpTo">} handlers */
 function checkBox({ label }, { toggle, chooseUpTo }) {
@@ -89,7 +119,7 @@ function checkBox({ label }, { toggle, chooseUpTo }) {
 }
 
 /** @param {HTMLElement} row @param {PickedTarget} target @param {RowState} state */
-export function refreshRow(row, target, { place, isMissed, index, arrival, isChosen, canPlan, selection }) {
+export function refreshRow(row, target, { place, isMissed, index, arrival, isChosen, canPlan, selection, wished }) {
   const pill = find(row, ".pill", HTMLElement);
   pill.className = `pill ${place ? `route-${routeNumber(place.sequence)}` : isMissed ? "missed" : "waiting"}`;
   pill.textContent = place ? `${place.letter}${place.number}` : isMissed ? "×" : `${index + 1}`;
@@ -101,10 +131,10 @@ export function refreshRow(row, target, { place, isMissed, index, arrival, isCho
         ? t("Not reached")
         : t("Not planned yet"),
   );
-  const second = [whoMayFly(target), target.detail].filter(Boolean).join(" · ");
+  const second = [canPlan ? sensorWords(target) : whoMayFly(target), target.detail].filter(Boolean).join(" · ");
   find(row, ".what small").textContent = second;
   find(row, ".what", HTMLElement).title = nameOf({ ...target, detail: second });
-  refreshMarks(find(row, ".target-marks", HTMLElement), target, selection);
+  refreshMarks(find(row, ".target-marks", HTMLElement), target, canPlan ? null : lockOf(selection, target.key));
   const when = find(row, ".target-when", HTMLElement);
   when.textContent = arrival;
   when.title = arrival && t("Reached at {time}", { time: arrival });
@@ -112,6 +142,32 @@ export function refreshRow(row, target, { place, isMissed, index, arrival, isCho
   if (!canPlan) return;
   find(row, ".check", HTMLInputElement).checked = isChosen;
   refreshTask(find(row, ".task", HTMLElement), target);
+  refreshUav(row, target, selection, wished);
+}
+
+/** @param {HTMLElement} row @param {PickedTarget} target @param {MissionSelection} selection @param {RowState["wished"]} wished */
+function refreshUav(row, target, selection, wished) {
+  const uav = uavOfTarget(target, selection);
+  const isLocked = lockOf(selection, target.key) !== null;
+  find(row, ".target-uav", HTMLElement).hidden = selection.uavs.length < 2 && uav === null;
+  const chip = find(row, ".uav-chip", HTMLElement);
+  const words = t("UAV: {name}", { name: uav ?? t("any") });
+  if (chip.textContent !== words) {
+    chip.replaceChildren(words, icon("chevron-down", "small"));
+    chip.setAttribute("aria-label", `${words}, ${target.label}`);
+    chip.classList.toggle("own", uav !== null);
+  }
+  const lock = find(row, ".lock", HTMLElement);
+  lock.hidden = !wished && !isLocked;
+  const place = { number: (wished?.index ?? 0) + 1, uav: wished?.uav ?? uav ?? "" };
+  const title = isLocked
+    ? t("Locked as target {number} of {uav}: unlock", place)
+    : t("Lock as target {number} of {uav}", place);
+  if (lock.title === title) return;
+  lock.replaceChildren(icon(isLocked ? "lock" : "lock-open", "small"));
+  lock.title = title;
+  lock.setAttribute("aria-label", `${target.label}: ${title}`);
+  lock.setAttribute("aria-pressed", String(isLocked));
 }
 
 /**
@@ -119,11 +175,10 @@ export function refreshRow(row, target, { place, isMissed, index, arrival, isCho
  *
  * @param {HTMLElement} place
  * @param {PickedTarget} target
- * @param {MissionSelection} selection
+ * @param {ReturnType<typeof lockOf>} lock shown as a mark
  */
-function refreshMarks(place, target, selection) {
+function refreshMarks(place, target, lock) {
   const { mark, label } = priorityOf(target);
-  const lock = lockOf(selection, target.key);
   /** @type {[string, string][]} */
   const marks = [
     .../** @type {[string, string][]} */ (mark ? [[mark, label]] : []),
@@ -143,10 +198,10 @@ function refreshMarks(place, target, selection) {
 function refreshTask(button, target) {
   const task = taskOf(target);
   const words = taskText(task);
-  const title = t("{task}. Change task, priority, UAV", { task: words });
+  const title = t("{task}. Change task, priority", { task: words });
   if (button.title === title) return;
   button.replaceChildren(icon(taskIcon(task), "small"), h("span", { class: "task-word" }, taskWord(task)));
   button.title = title;
-  button.setAttribute("aria-label", t("Task, priority, UAV of {name}: {task}", { name: target.label, task: words }));
+  button.setAttribute("aria-label", t("Task, priority of {name}: {task}", { name: target.label, task: words }));
   button.classList.toggle("own", !isUsualTask(target));
 }

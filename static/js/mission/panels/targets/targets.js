@@ -6,14 +6,14 @@ import { t, tn } from "../../../text.js";
 import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan/plan_view.js";
 import { arrivalsOf } from "../../plan/route_times.js";
 import { isWhole } from "../../selection.js";
-import { ordersOf } from "../../targets/locks.js";
-import { targetMenu } from "../../targets/target_menu.js";
+import { lockOf, ordersOf, wishedPlace } from "../../targets/locks.js";
+import { targetMenu, uavMenu } from "../../targets/target_menu.js";
 import { createChoosing } from "./choosing.js";
 import { mountChosenBar } from "./chosen_bar.js";
 import { createGroups } from "./group.js";
 import { refreshRow, targetRow } from "./row.js";
 
-/** @import { MissionActions, MissionPageState, MissionStore, PickedTarget } from "../../types.d.ts" */
+/** @import { FlownOrder, MissionActions, MissionPageState, MissionStore, PickedTarget } from "../../types.d.ts" */
 /** @import { Choosing } from "./choosing.js" */
 
 /**
@@ -25,6 +25,7 @@ import { refreshRow, targetRow } from "./row.js";
  * @property {string[]} order keys
  * @property {string[]} visible keys of the rows
  * @property {ReturnType<typeof arrivalsOf>} arrivals
+ * @property {FlownOrder[]} orders of the plan
  */
 
 const SHOWN_FIRST = 40;
@@ -38,7 +39,7 @@ const SHOWN_FIRST = 40;
 export function mountTargets(store, actions, canPlan, showOnMap) {
   let showAll = false;
   /** @type {Shown} */
-  let shown = { places: new Map(), missed: new Set(), order: [], visible: [], arrivals: new Map() };
+  let shown = { places: new Map(), missed: new Set(), order: [], visible: [], arrivals: new Map(), orders: [] };
   const list = byId("target-list");
   const groups = createGroups(() => refresh(store.state), SHOWN_FIRST);
   const choosing = createChoosing(store, { canPlan, order: () => shown.order });
@@ -71,7 +72,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
         }),
       toggle: () => choosing.toggle(target),
       chooseUpTo: () => choosing.upTo(target),
-      openTask: (opener) => openTask(opener, target.key, store, actions),
+      ...menusOf(target.key, store, actions),
       remove: () => actions.removeTargets([target.key]),
     });
 
@@ -88,6 +89,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
         isChosen: choosing.isChosen(target),
         canPlan,
         selection: store.state.selection,
+        wished: wishedPlace(shown.orders, store.state.selection, target.key),
       });
       groups.refresh(row, target);
     },
@@ -104,7 +106,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     const unfolded = choosing.isOn() ? groups.none(all) : groups.unfolded(all);
     const visible = showAll ? unfolded : unfolded.slice(0, SHOWN_FIRST);
     const [order, rows] = [all, visible].map((listed) => listed.map((target) => target.key));
-    shown = { places, missed, order, visible: rows, arrivals };
+    shown = { places, missed, order, visible: rows, arrivals, orders: ordersOf(state.plan) };
     draw(visible);
     const rest = unfolded.length - visible.length;
     byId("show-more").hidden = rest === 0;
@@ -174,13 +176,27 @@ function more(target, actions) {
   return [{ icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(asset) }];
 }
 
-/** @param {HTMLElement} opener @param {string} key @param {MissionStore} store @param {MissionActions} actions */
-function openTask(opener, key, store, actions) {
-  const target = store.state.selection.targets.find((candidate) => candidate.key === key);
-  if (!target) return;
-  toggleMenu(opener, () =>
-    targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target, actions)),
-  );
+/** What a row's chips do; a row is made once, and its target changes. @param {string} key @param {MissionStore} store @param {MissionActions} actions */
+function menusOf(key, store, actions) {
+  const known = () => store.state.selection.targets.find((target) => target.key === key);
+  /** @param {HTMLElement} opener @param {(target: PickedTarget) => HTMLElement} make */
+  function open(opener, make) {
+    const target = known();
+    if (target) toggleMenu(opener, () => make(target));
+  }
+  return {
+    /** @param {HTMLElement} opener */
+    openTask: (opener) =>
+      open(opener, (target) =>
+        targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target, actions)),
+      ),
+    /** @param {HTMLElement} opener */
+    openUav: (opener) => open(opener, (target) => uavMenu(target, actions, store.state.selection)),
+    turnLock() {
+      if (lockOf(store.state.selection, key)) actions.unlockTarget(key);
+      else actions.lockTarget(key);
+    },
+  };
 }
 
 /**
