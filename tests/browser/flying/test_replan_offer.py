@@ -99,7 +99,7 @@ def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
     """The pages of who started the flight and of who watches it, once another plan is offered on both."""
     pilot = opened(visitor.signs_in("opal"), f"/missions/{flight.mission}/fly")
     watcher = opened(visitor.signs_in("rory"), f"/missions/{flight.mission}/fly")
-    expect(pilot.get_by_role("button", name="Start 2 UAVs")).to_be_visible(timeout=UPLOADED_WITHIN_MS)  # a menu keeps what it was opened with
+    expect(pilot.get_by_role("button", name="Start 2 UAVs")).to_be_visible(timeout=UPLOADED_WITHIN_MS)  # menus stay
     for name in NAMES:
         starts(visitor, pilot, name)
     expect(watcher.locator("#mission-state")).to_have_text("In flight")

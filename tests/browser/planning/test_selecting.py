@@ -193,7 +193,7 @@ def shared_name(page: Page) -> tuple[str, list[str]]:
 
 def tasks(page: Page) -> list[str]:
     buttons = page.get_by_role("button", name=re.compile("^Task, priority of "))
-    return [str(button.get_attribute("title")).removesuffix(". Change task, priority, UAV") for button in buttons.all()]
+    return [str(button.get_attribute("title")).removesuffix(". Change task, priority") for button in buttons.all()]
 
 
 def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
