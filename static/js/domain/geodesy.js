@@ -124,3 +124,38 @@ export function nearestOnLine(geometry, [longitude, latitude]) {
   }
   return best?.position.map((degrees) => Number(degrees.toFixed(7))) ?? null;
 }
+
+/**
+ * A closed line with the corners that it needs to stay within a share of its extent (Douglas and Peucker 1973).
+ *
+ * @template {readonly number[]} Place
+ * @param {readonly Place[]} ring open
+ * @param {number} share
+ * @returns {Place[]}
+ */
+export function simplified(ring, share) {
+  const stretch = Math.cos((ring[0]?.[1] ?? 0) * RADIANS);
+  const flat = ring.map(([longitude, latitude]) => [longitude * stretch, latitude]);
+  const [xs, ys] = [0, 1].map((axis) => flat.map((point) => point[axis]));
+  const within = share * Math.max(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
+  /** @param {number} first @param {number} last @returns {number[]} indices that stay, without the last */
+  function kept(first, last) {
+    let [far, at] = [within, -1];
+    for (let index = first + 1; index < last; index += 1) {
+      const away = fromLine(flat[index], flat[first], flat[last]);
+      if (away > far) [far, at] = [away, index];
+    }
+    return at < 0 ? [first] : [...kept(first, at), ...kept(at, last)];
+  }
+  if (ring.length < 4) return [...ring];
+  const middle = ring.length >> 1;
+  const last = ring.length - 1;
+  const isBack = Math.hypot(flat[last][0] - flat[0][0], flat[last][1] - flat[0][1]) <= within; // at its begin
+  return [...kept(0, middle), ...kept(middle, last), ...(isBack ? [] : [last])].map((index) => ring[index]);
+}
+
+/** Distance of a point from a line between two others. @param {number[]} point @param {number[]} from @param {number[]} to */
+function fromLine([x, y], [x1, y1], [x2, y2]) {
+  const length = Math.hypot(x2 - x1, y2 - y1);
+  return length ? Math.abs((x2 - x1) * (y1 - y) - (x1 - x) * (y2 - y1)) / length : Math.hypot(x - x1, y - y1);
+}

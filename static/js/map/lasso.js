@@ -5,6 +5,7 @@ import { swallowDrawnClick } from "./drawn_click.js";
 
 /** @import { MapLibreMap, Position } from "./types.d.ts" */
 
+const DRAWS = ["lasso", "zone"]; // tools
 const STEP_PX = 4; // between kept points
 const MIN_PX = 24; // a smaller drawing was a click
 
@@ -42,7 +43,7 @@ export function drawLassos(map, canvas, on) {
     "pointerdown",
     (event) => {
       click.begins();
-      if (event.button !== 0 || on.tool() !== "lasso" || event.shiftKey || !event.isPrimary) return;
+      if (event.button !== 0 || !DRAWS.includes(on.tool()) || event.shiftKey || !event.isPrimary) return;
       event.stopPropagation();
       event.preventDefault();
       map.dragPan.disable();

@@ -307,6 +307,10 @@ function placeInTheMiddle() {
     actions.addRallyPoint(map.centre());
     return true;
   }
+  if (store.state.tool === "zone") {
+    map.askForZone({ centre: map.centre() });
+    return true;
+  }
   if (store.state.tool !== "place") return false;
   uavPanel?.askForUav();
   return true;

@@ -373,7 +373,7 @@ export interface Caught {
   covered: number;
 }
 
-export type Tool = "point" | "box" | "lasso" | "line" | "stretch" | "place" | "rally";
+export type Tool = "point" | "box" | "lasso" | "line" | "stretch" | "place" | "rally" | "zone";
 
 /** What the page knows: the state of its store. */
 export interface MissionPageState {

@@ -39,9 +39,10 @@ const field = (id, words, input) => h("div", { class: "field" }, h("label", { fo
  * @param {ZoneDetailFeature | null} feature null for a new one
  * @param {string} _choice
  * @param {Facts | null} kept values of an edit that is resumed
+ * @param {{ element: HTMLElement, read: () => unknown }} [times] in place of the editor of the schedule
  * @returns {RecordForm}
  */
-export function zoneForm(feature, _choice, kept) {
+export function zoneForm(feature, _choice, kept, times) {
   /** @type {Partial<ZoneDetailProperties>} */
   const facts = { ...feature?.properties, ...kept };
   const name = h("input", {
@@ -57,7 +58,7 @@ export function zoneForm(feature, _choice, kept) {
   const reason = reasonField(facts.reason ?? "");
   const lower = limitField("lower", t("Lower limit"), facts.lower_limit ?? null);
   const upper = limitField("upper", t("Upper limit"), facts.upper_limit ?? null);
-  const times = scheduleEditor(facts.schedule ?? null);
+  const when = times ?? scheduleEditor(facts.schedule ?? null);
   return {
     element: h(
       "form",
@@ -78,7 +79,7 @@ export function zoneForm(feature, _choice, kept) {
       ),
       upper.element,
       lower.element,
-      times.element,
+      when.element,
     ),
     read: () => ({
       name: name.value.trim(),
@@ -86,7 +87,7 @@ export function zoneForm(feature, _choice, kept) {
       reason: reason.read(),
       lower_limit: lower.read(),
       upper_limit: upper.read(),
-      schedule: times.read(),
+      schedule: when.read(),
     }),
   };
 }

@@ -17,6 +17,7 @@ import { t, tn } from "../../text.js";
 import { mountHandMap } from "../hand/hand_map.js";
 import { usesRallyPoints } from "../options/lost_link.js";
 import { mountCaught } from "../panels/caught.js";
+import { askForZone as askForFacts } from "../panels/temporary_zone.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "../plan/plan_view.js";
 import { staysOf } from "../plan/route_times.js";
 import { isWhole, nameOf, placeTarget } from "../selection.js";
@@ -30,6 +31,7 @@ import { mountReachLayer } from "./reach_layer.js";
 
 /** @import { VectorTileSource } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { Box, Geometry, MapLibreMap, MapView, Position } from "../../map/types.d.ts" */
+/** @import { Drawn } from "../panels/temporary_zone.js" */
 /** @import { BestSoFar, MissionActions, MissionPageData, MissionPageState, MissionStore, PickedTarget } from "../types.d.ts" */
 
 /** @typedef {Parameters<ReturnType<typeof createTargets>["update"]>[0]} TargetPills */
@@ -70,23 +72,28 @@ export function mountMap(store, actions, page, { askForUav }) {
   const layers = createLayers(view, frame, store, actions, page);
   const controls = mountControls(view, page, {
     fit: () => fitting.fit(),
-    isBusy: () => ["place", "rally"].includes(store.state.tool),
+    isBusy: () => ["place", "rally", "zone"].includes(store.state.tool),
     measures: (isOn) => {
       if (isOn) store.update({ tool: "point" });
     },
     recoloured: layers.recolour,
     layers: () => layers.entries(),
-    placeActs: (place) =>
-      page.canPlan
+    placeActs: (place) => [
+      ...(page.canPlan
         ? [
             { icon: "map-pin", label: t("Inspect here"), act: () => actions.addTargets([placeTarget(place)]) },
             { icon: "plus", label: t("Add a UAV here"), act: () => askForUav(place) },
           ]
-        : [],
+        : []),
+      ...(page.canCurate
+        ? [{ icon: "zone", label: t("Temporary no-fly zone"), act: () => store.update({ tool: "zone" }) }]
+        : []),
+    ],
   });
   const { targets, shapes } = layers;
   const canPlan = page.canPlan;
-  const pointing = { map, frame, store, actions, canPlan, controls, targets, shapes, askForUav };
+  const askForZone = zoneAsking(store);
+  const pointing = { map, frame, store, actions, canPlan, controls, targets, shapes, askForUav, askForZone };
   const picking = mountMapPointer({ ...pointing, reach: layers.reach, isHandOn: () => layers.isHandOn() });
 
   store.listen(["tool"], ({ tool }) => {
@@ -107,6 +114,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     ready: view.ready.then(start),
     fit: fitting.fit,
     opensAtPlace,
+    askForZone,
     /** @param {number} steps */
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),
     bindings: controls.bindings,
@@ -334,6 +342,12 @@ function watchPlans({ map, opensAtPlace }, store, fitting) {
   });
 }
 
+/** The tool ends with the zone, or with the question. @param {MissionStore} store @returns {(drawn: Drawn) => void} */
+const zoneAsking = (store) => (drawn) => {
+  const end = () => store.update({ tool: "point" });
+  askForFacts(drawn, { closed: end });
+};
+
 /** What to do with the tool in hand, over the map. @param {MissionStore} store */
 function mountBanner(store) {
   const banner = byId("map-banner");
@@ -341,10 +355,11 @@ function mountBanner(store) {
   const placing = {
     place: t("Click where the UAV takes off, or press Enter for the middle of the map."),
     rally: t("Click where UAVs may land without a link, or press Enter for the middle of the map."),
+    zone: t("Draw a line round the zone, or click its middle; Enter takes the middle of the map."),
   };
   store.listen(["tool", "stretchFrom"], (state) => {
     const words = placing[state.tool] ?? toolWords(state);
-    const end = state.tool === "place" ? t("Cancel") : t("Done");
+    const end = state.tool === "place" || state.tool === "zone" ? t("Cancel") : t("Done");
     const onclick = () => store.update({ tool: "point" });
     banner.hidden = !words;
     banner.replaceChildren(words ?? "", h("button", { type: "button", class: "text-button", onclick }, end));

@@ -10,6 +10,7 @@ import { createMapPicking } from "./map_picking.js";
 
 /** @import { createTargets } from "../../map/layers/targets.js" */
 /** @import { MapControls, MapLibreMap, MapThing, Position, ScreenPoint } from "../../map/types.d.ts" */
+/** @import { Drawn } from "../panels/temporary_zone.js" */
 /** @import { MissionActions, MissionStore } from "../types.d.ts" */
 /** @import { createPickedShapes } from "./picked_shapes.js" */
 /** @import { mountReachLayer } from "./reach_layer.js" */
@@ -27,6 +28,7 @@ import { createMapPicking } from "./map_picking.js";
  * @property {() => ReturnType<typeof mountReachLayer> | null} reach null until the map has its style
  * @property {() => boolean} isHandOn whether a route is manually edited
  * @property {(position: number[]) => void} askForUav
+ * @property {(drawn: Drawn) => unknown} askForZone
  */
 
 /** @param {PointerContext} context */
@@ -62,6 +64,7 @@ export function mountMapPointer(context) {
     const { tool } = store.state;
     if (tool === "rally") actions.addRallyPoint(place);
     else if (context.isHandOn()) return;
+    else if (tool === "zone") context.askForZone({ centre: place });
     else if (tool === "place") context.askForUav(place.map((degrees) => Number(degrees.toFixed(6))));
     else {
       const met = tool === "stretch" ? null : targets.at(point);
@@ -109,7 +112,7 @@ export function mountMapPointer(context) {
     box: (box) => {
       if (canPlan) void actions.catchBox(box);
     },
-    lasso: (ring) => actions.catchArea(ring),
+    lasso: (ring) => (store.state.tool === "zone" ? context.askForZone({ ring }) : actions.catchArea(ring)),
   });
   return picking;
 }

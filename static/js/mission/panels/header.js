@@ -93,7 +93,14 @@ export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showP
 
   const more = byId("mission-menu");
   more.addEventListener("click", () =>
-    toggleMenu(more, () => menuOf(t("This mission"), itemsFor(store.state.mission, actions, { canPlan, canCopy }))),
+    toggleMenu(more, () =>
+      menuOf(t("This mission"), [
+        ...itemsFor(store.state.mission, actions, { canPlan, canCopy }),
+        ...(canCurate
+          ? [{ icon: "zone", label: t("Temporary no-fly zone"), act: () => store.update({ tool: "zone" }) }]
+          : []),
+      ]),
+    ),
   );
 
   store.listen(
