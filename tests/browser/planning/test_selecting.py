@@ -10,6 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, find_pickable, look_at, targets, wait_for_map
 from tests.browser.regions import region
+from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 
@@ -194,6 +195,36 @@ def shared_name(page: Page) -> tuple[str, list[str]]:
 def tasks(page: Page) -> list[str]:
     buttons = page.get_by_role("button", name=re.compile("^Task, priority of "))
     return [str(button.get_attribute("title")).removesuffix(". Change task, priority") for button in buttons.all()]
+
+
+def test_a_kml_is_looked_up_and_its_unknown_points_are_added_by_their_coordinates(
+    visitor: Visitor, picture: Callable[[Page, str], None]
+) -> None:
+    page = opens_new_mission(visitor)
+    tower = asks(page, "/assets?kind=tower&flyable=true&limit=1")["features"][0]
+    west, south = region.empty
+    places = [(tower["properties"]["osm"], "0,0"), ("Mast of nobody", f"{west},{south},12"), ("", "")]
+    marks = "".join(
+        f"<Placemark><name>{name}</name>{f'<Point><coordinates>{at}</coordinates></Point>' if at else ''}</Placemark>"
+        for name, at in places
+    )
+    content = f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>{marks}</Document></kml>'
+    page.keyboard.press("i")
+    file = {"name": "masts.kml", "mimeType": "application/vnd.google-earth.kml+xml", "buffer": content.encode()}
+    page.get_by_label("Take the list from a file").set_input_files(file)
+    page.get_by_role("button", name="Look them up").click()
+    expect(page.get_by_role("heading", name="1 found, 1 by coordinates.")).to_be_focused()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_role("region", name="By coordinates")).to_contain_text("Mast of nobody")
+    expect(dialog).to_contain_text("1 shape without a name is left out")
+    picture(page, "select-kml")
+    assert faults(page) == []
+    dialog.get_by_role("checkbox", name="Add them as places").uncheck()
+    expect(dialog.get_by_role("button", name="Add 1 target")).to_be_enabled()
+    dialog.get_by_role("checkbox", name="Add them as places").check()
+    dialog.get_by_role("button", name="Add 2 targets").click()
+    expect(rows(page)).to_have_count(2)
+    assert targets(page) == [tower["properties"]["label"], f"{south:.5f}, {west:.5f}"]
 
 
 def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:

@@ -15,7 +15,13 @@ import {
   withTargets,
   withTask,
 } from "../../../static/js/mission/selection.js";
-import { listIn, refsIn, rowsToAdd } from "../../../static/js/mission/targets/list_reading.js";
+import {
+  listIn,
+  placesToAdd,
+  refsIn,
+  rowsToAdd,
+  targetOfPlace,
+} from "../../../static/js/mission/targets/list_reading.js";
 import { createHistory, createStore } from "../../../static/js/store.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "T 7" }, centre: [10, 50] });
@@ -50,7 +56,8 @@ test("a table whose first line names external_id gives each reference its id", (
   );
   assert.deepEqual(listIn("external_id\tmast\nA\tT 1\n").refs, ["T 1"]);
   assert.deepEqual(listIn("a,,external_id\nT 1,,X").externalIds.get("T 1"), "X");
-  assert.deepEqual(listIn("T 1,T 2\nT 3"), { refs: ["T 1", "T 2", "T 3"], externalIds: new Map() });
+  const plain = { externalIds: new Map(), places: [], left: 0, format: "" };
+  assert.deepEqual(listIn("T 1,T 2\nT 3"), { refs: ["T 1", "T 2", "T 3"], ...plain });
   const results = [
     { ref: "T 1", match: "found", assets: [{ id: 1 }] },
     { ref: "T 2", match: "several", assets: [{ id: 2 }, { id: 3 }] },
@@ -235,4 +242,59 @@ test("undo goes back to the beginning, however many steps there were", () => {
   assert.deepEqual(store.state, { selection: { step: 0 }, canUndo: false, canRedo: true });
   while (history.redo());
   assert.equal(store.state.selection.step, 1_000);
+});
+
+test("a table with columns of coordinates has places, also with decimal commas", () => {
+  const { refs, places } = listIn("name;Lat;Lon\nMast 1;39,96123456;-83,0\n;39.5;-82.5\nMast 3;;\n");
+  assert.deepEqual(refs, ["Mast 1", "Mast 3"]);
+  assert.deepEqual(
+    places.map(({ ref, position }) => [ref, position]),
+    [
+      ["Mast 1", [-83, 39.961235]],
+      ["", [-82.5, 39.5]],
+    ],
+  );
+  assert.deepEqual(listIn("ref,latitude,longitude\nA,91,0\n").places, []);
+});
+
+test("of a GeoJSON names are looked up, points have a place, and other shapes without a name are counted", () => {
+  const feature = (geometry, properties, id) => ({ type: "Feature", id, geometry, properties });
+  const point = { type: "Point", coordinates: [9, 50, 120] };
+  const line = { type: "LineString", coordinates: [point.coordinates, [9.1, 50]] };
+  const features = [
+    feature(point, { REF: "T 1", external_id: "SAP-1" }),
+    feature(point, null, 7),
+    feature(line, { name: "North line" }),
+    feature(line, {}),
+    feature(null, null),
+  ];
+  const { refs, externalIds, places, left } = listIn(JSON.stringify({ type: "FeatureCollection", features }));
+  assert.deepEqual(refs, ["T 1", "7", "North line"]);
+  assert.deepEqual([...externalIds], [["T 1", "SAP-1"]]);
+  assert.deepEqual(
+    places.map(({ position }) => position),
+    [
+      [9, 50],
+      [9, 50],
+    ],
+  );
+  assert.equal(left, 2);
+  assert.deepEqual(listIn('{"type": "Feature"').refs, []);
+});
+
+test("a place is added by its coordinates where its name is not in the data", () => {
+  const place = (ref, external_id = "") => ({ ref, position: [9, 50], external_id });
+  const results = [
+    { ref: "T 1", match: "found", assets: [] },
+    { ref: "T 2", match: "none", assets: [] },
+    { ref: "T 3", match: "several", assets: [] },
+  ];
+  const places = placesToAdd([place("T 1"), place("T 2"), place("T 3"), place("")], results);
+  assert.deepEqual(
+    places.map(({ ref }) => ref),
+    ["T 2", ""],
+  );
+  assert.equal(targetOfPlace(place("T 2")).external_id, "T 2");
+  assert.equal(targetOfPlace(place("T 2", "SAP-2")).external_id, "SAP-2");
+  assert.equal(targetOfPlace(place("")).external_id, undefined);
 });

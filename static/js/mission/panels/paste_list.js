@@ -4,10 +4,13 @@ import { ApiError } from "../../api.js";
 import { find, h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
+import { coordinateText, numberText } from "../../units.js";
 import { nameOf, targetOfRow } from "../selection.js";
-import { listIn, lookUp, MAX_REFS, rowsToAdd } from "../targets/list_reading.js";
+import { listIn, lookUp, MAX_REFS, placesToAdd, rowsToAdd, targetOfPlace } from "../targets/list_reading.js";
 
 /** @import { AssetKind, LookupResult } from "../../api_types.d.ts" */
+/** @import { List } from "../targets/list_reading.js" */
+/** @import { Entry } from "../targets/file_reading.js" */
 /** @import { MissionActions } from "../types.d.ts" */
 
 /** @returns {["" | AssetKind, string][]} */
@@ -18,6 +21,7 @@ const KINDS = () => [
   ["railway", t("Railways")],
   ["bridge", t("Bridges")],
 ];
+const MAX_LISTED = 50;
 const MAX_FILE_LINES = 2_000_000;
 
 /** @typedef {ReturnType<typeof rowsToAdd>[number]} Row */
@@ -31,12 +35,14 @@ export function askForList(actions) {
   const asking = new AbortController();
   const { form, words } = createForm({ showAnswer, signal: asking.signal, close: () => dialog.close() });
 
-  /** @param {LookupResult[]} results @param {Map<string, string>} externalIds */
-  function showAnswer(results, externalIds) {
-    const content = answer(results, externalIds, {
-      add(rows) {
+  /** @param {LookupResult[]} results @param {List} list */
+  function showAnswer(results, list) {
+    const content = answer(results, list, {
+      add(rows, places) {
         dialog.close();
-        actions.addMany(rows.map(targetOf), (added) => t("{added} from the list.", { added }));
+        actions.addMany([...rows.map(targetOf), ...places.map(targetOfPlace)], (added) =>
+          t("{added} from the list.", { added }),
+        );
       },
       back() {
         dialog.replaceChildren(form);
@@ -56,7 +62,7 @@ export function askForList(actions) {
 /**
  * The form that takes the list.
  *
- * @param {{ showAnswer: (results: LookupResult[], externalIds: Map<string, string>) => void, signal: AbortSignal, close: () => void }} how
+ * @param {{ showAnswer: (results: LookupResult[], list: List) => void, signal: AbortSignal, close: () => void }} how
  */
 function createForm({ showAnswer, signal, close }) {
   const words = h("textarea", {
@@ -78,11 +84,18 @@ function createForm({ showAnswer, signal, close }) {
   const go = h("button", { class: "button primary" }, t("Look them up"));
 
   async function ask() {
-    const { refs, externalIds } = listIn(words.value);
-    if (!refs.length || refs.length > MAX_REFS) {
-      wrong.textContent = refs.length
-        ? t("At most {most} references at once; these are {count}.", { most: MAX_REFS, count: refs.length })
-        : t("Paste at least one reference.");
+    const list = listIn(words.value);
+    const { refs } = list;
+    const count = Math.max(refs.length, list.places.length);
+    if (!count || count > MAX_REFS) {
+      wrong.textContent = count
+        ? t("At most {most} references at once; these are {count}.", {
+            most: numberText(MAX_REFS),
+            count: numberText(count),
+          })
+        : list.format
+          ? t("No point and no name was found: this is no {format} of places.", { format: list.format })
+          : t("Paste at least one reference.");
       words.focus();
       return;
     }
@@ -90,7 +103,7 @@ function createForm({ showAnswer, signal, close }) {
     go.setAttribute("aria-busy", "true");
     go.textContent = t("Looking…");
     try {
-      showAnswer(await lookUp(refs, kind.value ? [/** @type {AssetKind} */ (kind.value)] : [], signal), externalIds);
+      showAnswer(await lookUp(refs, kind.value ? [/** @type {AssetKind} */ (kind.value)] : [], signal), list);
     } catch (error) {
       if (error instanceof DOMException && error.name === "AbortError") return;
       wrong.textContent = error instanceof ApiError ? error.message : t("The list could not be looked up.");
@@ -115,6 +128,8 @@ function createForm({ showAnswer, signal, close }) {
         t("One per line, or separated by commas, semicolons or tabs."),
         " ",
         t("With a first line “ref;external_id” it is a table, and targets get these ids."),
+        " ",
+        t("GeoJSON, KML and tables with columns lat and lon are read, too."),
       ),
     ),
     h(
@@ -138,7 +153,7 @@ function createForm({ showAnswer, signal, close }) {
 function fileInput(words, wrong) {
   const input = h("input", {
     type: "file",
-    accept: ".txt,.csv,text/plain,text/csv",
+    accept: ".txt,.csv,.geojson,.json,.kml,text/plain,text/csv",
     class: "unseen",
     id: "paste-file",
     "aria-label": t("Take the list from a file"),
@@ -154,16 +169,18 @@ function fileInput(words, wrong) {
 }
 
 /**
- * Counts of references that were found, are ambiguous, or are unknown.
+ * Counts of references that were found, are ambiguous, are known by their coordinates alone, or are unknown.
  *
  * @param {number} found
  * @param {number} several
+ * @param {number} places
  * @param {number} none
  */
-const sentenceOf = (found, several, none) =>
+const sentenceOf = (found, several, places, none) =>
   [
     found > 0 && tn(found, "{count} found", "{count} found"),
     several > 0 && tn(several, "{count} means several things", "{count} mean several things"),
+    places > 0 && tn(places, "{count} by coordinates", "{count} by coordinates"),
     none > 0 && tn(none, "{count} not found", "{count} not found"),
   ]
     .filter(Boolean)
@@ -173,23 +190,29 @@ const sentenceOf = (found, several, none) =>
  * What the references mean; of those with several meanings one is chosen.
  *
  * @param {LookupResult[]} results
- * @param {Map<string, string>} externalIds
- * @param {{ add: (rows: Row[]) => void, back: () => void }} acts
+ * @param {List} list
+ * @param {{ add: (rows: Row[], places: Entry[]) => void, back: () => void }} acts
  */
-function answer(results, externalIds, { add, back }) {
+function answer(results, { externalIds, places: given, left }, { add, back }) {
   /** @type {Map<string, string>} */
   const choices = new Map();
   const several = results.filter(({ match }) => match === "several");
-  const none = results.filter(({ match }) => match === "none");
+  const places = placesToAdd(given, results);
+  const placed = new Set(places.map(({ ref }) => ref));
+  const none = results.filter(({ ref, match }) => match === "none" && !placed.has(ref));
+  const tick = h("input", { type: "checkbox", class: "check", checked: true });
+  const wanted = () => (tick.checked ? places : []);
   const addButton = h("button", { type: "button", class: "button primary" });
-  addButton.addEventListener("click", () => add(rowsToAdd(results, choices, externalIds)));
+  addButton.addEventListener("click", () => add(rowsToAdd(results, choices, externalIds), wanted()));
   const refresh = () => {
-    const count = rowsToAdd(results, choices).length;
+    const count = rowsToAdd(results, choices).length + wanted().length;
     addButton.textContent = count ? tn(count, "Add {count} target", "Add {count} targets") : t("Nothing to add");
     addButton.disabled = !count;
   };
+  tick.addEventListener("change", refresh);
   refresh();
-  const sentence = sentenceOf(results.length - several.length - none.length, several.length, none.length);
+  const found = results.filter(({ match }) => match === "found").length;
+  const sentence = sentenceOf(found, several.length, places.length, none.length);
   return h(
     "div",
     { class: "stack" },
@@ -200,6 +223,17 @@ function answer(results, externalIds, { add, back }) {
         { "aria-label": t("Several meanings") },
         h("h3", {}, t("Which is meant?")),
         several.map((result) => choiceOf(result, choices, refresh)),
+      ),
+    places.length > 0 && placesPart(places, tick),
+    left > 0 &&
+      h(
+        "p",
+        { class: "caption" },
+        tn(
+          left,
+          "{count} shape without a name is left out: points and names are read.",
+          "{count} shapes without a name are left out: points and names are read.",
+        ),
       ),
     none.length > 0 &&
       h(
@@ -216,6 +250,24 @@ function answer(results, externalIds, { add, back }) {
     ),
   );
 }
+
+/** Places that are no assets of the data. @param {Entry[]} places @param {HTMLInputElement} tick */
+const placesPart = (places, tick) =>
+  h(
+    "section",
+    { "aria-label": t("By coordinates") },
+    h("h3", {}, t("Not in the data, but with coordinates")),
+    h(
+      "p",
+      { class: "paste-unknown", tabindex: "0" },
+      places
+        .slice(0, MAX_LISTED)
+        .map(({ ref, position }) => [ref, position && coordinateText(position)].filter(Boolean).join(" "))
+        .join("; "),
+      places.length > MAX_LISTED && " …",
+    ),
+    h("label", { class: "paste-places" }, tick, h("span", {}, t("Add them as places"))),
+  );
 
 /**
  * A reference with several matches: skip it, choose one, or all that are listed.
