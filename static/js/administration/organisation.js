@@ -1,6 +1,6 @@
 /** Name and time zone of the organisation. */
 
-import { ApiError, get, request } from "../api.js";
+import { ApiError, get, patch } from "../api.js";
 import { byId } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
@@ -34,8 +34,8 @@ export function mountOrganisation({ notify, settle }) {
     event.preventDefault();
     const body = { name: name.value.trim(), time_zone: zone.value };
     try {
-      const options = { body, headers: { "If-Match": `"${revision}"` } };
-      const { data } = /** @type {Answer<Organisation>} */ (await request("PATCH", "/organisation", options));
+      const headers = { "If-Match": `"${revision}"` };
+      const { data } = /** @type {Answer<Organisation>} */ (await patch("/organisation", body, { headers }));
       show(data);
       settle();
       toast(t("Saved. Open pages show it after they are loaded again."));

@@ -10,7 +10,7 @@ import { LINKS } from "./words.js";
 /** @import { UavConnection } from "../api_types.d.ts" */
 
 const ASKED_EVERY_MS = 5_000;
-const WAITING_MS = 2_000; // before the first message, for which somebody stands beside the UAV
+const WAITING_MS = 2_000; // before the first message, which a technician waits for beside the UAV
 const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
 
 /**

@@ -5,7 +5,7 @@ import { byId, h, icon, keyedList } from "../dom.js";
 import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { fileCard } from "./file_card.js";
-import { guessKind, HEAD_BYTES, setNameOf, whyNotSent } from "./kinds.js";
+import { guessKind, headOf, setNameOf, whyNotSent } from "./kinds.js";
 import { createRememberedUploads, markOf } from "./remembered_uploads.js";
 import { sendFile, untilAnswered } from "./send_file.js";
 
@@ -223,11 +223,6 @@ function setKind(item, kind) {
 /** @param {string} why in one sentence; nothing of the file is sent */
 const refuseFile = (why) =>
   byId("notices").append(h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, why)));
-
-/** @param {File} file */
-async function headOf(file) {
-  return new Uint8Array(await file.slice(0, HEAD_BYTES).arrayBuffer());
-}
 
 /**
  * Accept a file dropped anywhere on the page; the drop area is highlighted meanwhile.

@@ -17,7 +17,7 @@ const ZONE_WORDS =
   /"(UASZone|uasZoneList|uSpaceClass|zoneAuthority|restriction|lowerLimit|upperLimit|verticalReference)"/i;
 const ASSET_WORDS = /"(power|voltage|voltages_v|railway|bridge|cables)"\s*:|"(LineString|MultiLineString|Point)"/;
 
-export const HEAD_BYTES = 4096;
+const HEAD_BYTES = 4096;
 
 /** First bytes of formats that no reader takes: inspection/importers/foreign_formats.py. @type {[string, string][]} */
 const FOREIGN = [
@@ -75,3 +75,6 @@ export function setNameOf(fileName) {
       .trim() || fileName
   );
 }
+
+/** The begin of a file, by which its kind is known. @param {File} file */
+export const headOf = async (file) => new Uint8Array(await file.slice(0, HEAD_BYTES).arrayBuffer());

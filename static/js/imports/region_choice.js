@@ -1,8 +1,9 @@
 /** "Replace the whole region": what it would remove is named before the file is read again for it. */
 
 import { h } from "../dom.js";
+import { countedText } from "../domain/counted.js";
 import { open as openDialog } from "../page/keyboard.js";
-import { t, tn } from "../text.js";
+import { t } from "../text.js";
 
 /** @import { Proposal, ProposalActs } from "./types.d.ts" */
 
@@ -11,7 +12,7 @@ export function regionChoice({ kind, state, parameters, summary }, readAgain) {
   if (kind !== "osm" || state !== "ready") return null;
   const checked = Boolean(parameters.replace_region);
   const box = h("input", { class: "check", type: "checkbox", id: "replace-region", checked });
-  const removed = removedText(summary.replaced_region_removes ?? {});
+  const removed = countedText(summary.replaced_region_removes ?? {});
   box.addEventListener("change", () => {
     if (box.checked && removed) {
       box.checked = false;
@@ -27,21 +28,6 @@ export function regionChoice({ kind, state, parameters, summary }, readAgain) {
     h("label", { class: "overwrite" }, box, h("span", {}, t("Replace the whole region with this file"))),
     !checked && summary.replaced_region_removes && h("p", { class: "caption" }, words),
   );
-}
-
-/** "12 towers, 3 lines"; empty where there is none. @param {Record<string, number>} removed by kind */
-export function removedText(removed) {
-  /** @type {Record<string, (count: number) => string>} */
-  const words = {
-    tower: (count) => tn(count, "{count} tower", "{count} towers"),
-    line: (count) => tn(count, "{count} line", "{count} lines"),
-    railway: (count) => tn(count, "{count} railway", "{count} railways"),
-    bridge: (count) => tn(count, "{count} bridge", "{count} bridges"),
-  };
-  return Object.entries(words)
-    .filter(([kind]) => removed[kind] > 0)
-    .map(([kind, counted]) => counted(removed[kind]))
-    .join(", ");
 }
 
 /** @param {string} removed @param {() => void} replace */

@@ -8,6 +8,7 @@ import { confirmAct } from "../page/confirm.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { countsText } from "./look/region_words.js";
+import { boxAround } from "./map_view.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Box, MapLibreMap, MapPage, Position, Region } from "./types.d.ts" */
@@ -83,13 +84,16 @@ function menu(regions, here, canCurate, show) {
   );
 }
 
-/** @param {Region[]} regions @returns {Box} */
-const around = (regions) => [
-  Math.min(...regions.map(({ extent }) => extent[0])),
-  Math.min(...regions.map(({ extent }) => extent[1])),
-  Math.max(...regions.map(({ extent }) => extent[2])),
-  Math.max(...regions.map(({ extent }) => extent[3])),
-];
+/** @param {Region[]} regions */
+const around = (regions) =>
+  /** @type {Box} */ (
+    boxAround(
+      regions.flatMap(({ extent: [west, south, east, north] }) => [
+        [west, south],
+        [east, north],
+      ]),
+    )
+  );
 
 /** @param {Region} region */
 async function rename({ id, name }) {

@@ -21,3 +21,21 @@ export async function zoneDetails(id) {
   known.set(id, { at: Date.now(), properties });
   return properties;
 }
+
+/**
+ * An element that is shown only where a zone is not in force at all times.
+ *
+ * @template {HTMLElement} Kind
+ * @param {Kind} element
+ * @param {number} id of the zone
+ */
+export function shownWhereTimed(element, id) {
+  element.hidden = true;
+  zoneDetails(id).then(
+    ({ schedule }) => {
+      element.hidden = !schedule?.length;
+    },
+    () => {},
+  );
+  return element;
+}

@@ -1,7 +1,7 @@
 /** "Import": a zone file is sent from the page of zones; its difference is then shown on the page of imports. */
 
 import { ApiError, post } from "../api.js";
-import { guessKind, HEAD_BYTES, setNameOf, whyNotSent } from "../imports/kinds.js";
+import { guessKind, headOf, setNameOf, whyNotSent } from "../imports/kinds.js";
 import { sendFile } from "../imports/send_file.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
@@ -22,7 +22,7 @@ export function mountImportButton(button, input) {
 
 /** @param {File} file */
 async function send(file) {
-  const head = new Uint8Array(await file.slice(0, HEAD_BYTES).arrayBuffer());
+  const head = await headOf(file);
   const why = whyNotSent(file.name, file.size, head);
   if (why) return toast(why);
   if (guessKind(file.name, head) !== "zones") {

@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
+import { countedText } from "../../../static/js/domain/counted.js";
 import { tableOf } from "../../../static/js/imports/changes.js";
 import { placeOfSign } from "../../../static/js/imports/changes_layer.js";
 import { mappingOf, meaningsOf, withMeaning } from "../../../static/js/imports/column_mapping.js";
 import { guessKind, setNameOf, whyNotSent } from "../../../static/js/imports/kinds.js";
 import { areaKm2 } from "../../../static/js/imports/overpass_box.js";
-import { removedText } from "../../../static/js/imports/region_choice.js";
 import { createRememberedUploads, markOf } from "../../../static/js/imports/remembered_uploads.js";
 import { viewOfExtent } from "../../../static/js/imports/where_next.js";
 import {
@@ -247,8 +247,8 @@ test("the table of a difference has a row for each kind and one for all", () => 
 });
 
 test("what a replaced region removes is named by kind", () => {
-  assert.equal(removedText({ tower: 12, line: 1 }), "12 towers, 1 line");
-  assert.equal(removedText({}), "");
+  assert.equal(countedText({ tower: 12, line: 1 }), "12 towers, 1 line");
+  assert.equal(countedText({}), "");
 });
 
 test("an applied import is shown in the middle of the map", () => {

@@ -1,8 +1,8 @@
 /** What a box or a lasso has found: its groups, and which of it is chosen. Values in, values out. */
 
+import { countedByKind } from "../../domain/counted.js";
 import { t, tn } from "../../text.js";
 import { keyOf } from "../selection.js";
-import { countedByKind } from "./proposed_name.js";
 
 /** @import { PickedAsset } from "../../api_types.d.ts" */
 /** @import { PickedTarget } from "../types.d.ts" */

@@ -1,29 +1,11 @@
 /** The name that a mission is proposed, from what is picked. Values in, values out. */
 
-import { tn } from "../../text.js";
+import { countedByKind } from "../../domain/counted.js";
 import { nameOf } from "../selection.js";
 
 /** @import { PickedTarget } from "../types.d.ts" */
 
 const MAX_LENGTH = 120;
-
-/** @type {Record<string, (count: number) => string>} */
-const COUNTED = {
-  tower: (count) => tn(count, "{count} tower", "{count} towers"),
-  bridge: (count) => tn(count, "{count} bridge", "{count} bridges"),
-  line: (count) => tn(count, "{count} line", "{count} lines"),
-  railway: (count) => tn(count, "{count} railway", "{count} railways"),
-  place: (count) => tn(count, "{count} place", "{count} places"),
-};
-
-/** "142 towers, 16 bridges". @param {Pick<PickedTarget, "kind">[]} targets */
-export function countedByKind(targets) {
-  return Object.entries(COUNTED)
-    .map(([kind, words]) => ({ words, count: targets.filter((target) => target.kind === kind).length }))
-    .filter(({ count }) => count > 0)
-    .map(({ words, count }) => words(count))
-    .join(", ");
-}
 
 /**
  * "Tower 17 of 41, 138 kV AEP" of one target, "138 kV AEP: 41 towers" where all are alike, else how many there are of each kind; empty without any.

@@ -1,7 +1,7 @@
 /** One card for each cause for which a plan leaves targets out: how many, why, and the acts that resolve it. */
 
 import { h, icon } from "../../dom.js";
-import { zoneDetails } from "../../map/zone_details.js";
+import { shownWhereTimed } from "../../map/zone_details.js";
 import { t, tn } from "../../text.js";
 import { causesOf, causeWords, commonSentence } from "./causes.js";
 
@@ -74,7 +74,7 @@ function whichOf(cause) {
 
 /** @param {Cause} cause @param {CardContext} context @returns {Child[]} */
 function actsOf({ code, targets, zone }, context) {
-  const { actions, canPlan, canCurate, askWhy, showTogether, addUavAt } = context;
+  const { actions, canPlan, canCurate, askWhy, showTogether, addUavAt, lookForDeparture } = context;
   const places = targets.flatMap(({ target }) => (target.centre ? [target.centre] : []));
   const id = zone?.id ?? null;
   const [{ target: first }] = targets;
@@ -82,7 +82,7 @@ function actsOf({ code, targets, zone }, context) {
     places.length > 0 && button(t("Show"), () => showTogether(places, id === null ? [] : [id])),
     targets.length === 1 && button(t("Why?"), () => askWhy({ target: first.key })),
     canPlan && NEEDS_UAV.includes(code) && places.length > 0 && button(t("Add a UAV there"), () => addUavAt(places[0])),
-    canPlan && id !== null && departureAct(id, context),
+    canPlan && id !== null && shownWhereTimed(button(t("Look for a better departure"), lookForDeparture), id),
     canCurate && id !== null && h("a", { class: "text-button", href: `/zones?id=${id}` }, t("Open the zone")),
     canPlan &&
       button(
@@ -92,19 +92,6 @@ function actsOf({ code, targets, zone }, context) {
         () => actions.removeTargets(targets.map(({ target }) => target.key)),
       ),
   ];
-}
-
-/** Offered only where the zone is not in force at all times. @param {number} id of the zone @param {CardContext} context */
-function departureAct(id, { lookForDeparture }) {
-  const act = button(t("Look for a better departure"), lookForDeparture);
-  act.hidden = true;
-  zoneDetails(id).then(
-    ({ schedule }) => {
-      act.hidden = !schedule?.length;
-    },
-    () => {},
-  );
-  return act;
 }
 
 /** @param {string} label @param {() => unknown} act */

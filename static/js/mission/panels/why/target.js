@@ -1,7 +1,7 @@
 /** Why no route visits a target: the reason, the figures behind it, and one change or more that would help. */
 
 import { h } from "../../../dom.js";
-import { zoneDetails } from "../../../map/zone_details.js";
+import { shownWhereTimed } from "../../../map/zone_details.js";
 import { t, tn } from "../../../text.js";
 import { heightText, lengthText } from "../../../units.js";
 import { showLegalTimes } from "../options/legal_times.js";
@@ -179,18 +179,9 @@ function changes(explanation, { target, full, store, actions }) {
   return h("div", {}, h("h3", {}, t("What would help")), h("ul", { class: "why-changes" }, list));
 }
 
-/** Another departure; offered only where the zone is not in force at all times. @param {number} id of the zone @param {() => unknown} run */
-function changeOfTime(id, run) {
-  const item = act(t("The zone is not always in force."), t("Look for a better departure"), run);
-  item.hidden = true;
-  zoneDetails(id).then(
-    ({ schedule }) => {
-      item.hidden = !schedule?.length;
-    },
-    () => {},
-  );
-  return item;
-}
+/** Another departure. @param {number} id of the zone @param {() => unknown} run */
+const changeOfTime = (id, run) =>
+  shownWhereTimed(act(t("The zone is not always in force."), t("Look for a better departure"), run), id);
 
 /** What helps a target that is out of range. @param {Reach[]} uavs @param {MissionActions} actions */
 function changesOfRange(uavs, actions) {
