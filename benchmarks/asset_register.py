@@ -101,7 +101,8 @@ def main() -> None:
             size = sum(len(piece) for piece in answer.streaming_content)
             rows.append([f"all as {ending}, {size / 1e6:.0f} MB", f"{(perf_counter() - began) * 1000.0:.0f}"])
         transaction.set_rollback(True)
-    text = f"`python -m benchmarks.asset_register`: {options.assets:,} assets. {machine('django')}\n\n" + table(["request", "median [ms]"], rows)
+    head = f"`python -m benchmarks.asset_register`: {options.assets:,} assets. {machine('django')}\n\n"
+    text = head + table(["request", "median [ms]"], rows)
     print(text)
     if options.write:
         write_section("Register of assets", text)

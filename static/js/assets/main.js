@@ -2,13 +2,18 @@
 
 import { byId, h, segments, term } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
+import { countsText } from "../map/look/region_words.js";
+import { readPage } from "../page/chrome.js";
 import { t, tn } from "../text.js";
-import { coordinateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
+import { coordinateText, dateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
+import { editMarked } from "./bulk_edit.js";
+import { mountFilters } from "./filters.js";
 import { assetForm } from "./form.js";
 
-/** @import { AssetDetailFeature, AssetDetailProperties, AssetFeature } from "../api_types.d.ts" */
+/** @import { AssetCounts, AssetDetailFeature, AssetDetailProperties, AssetFeature } from "../api_types.d.ts" */
 /** @import { ShapeKind } from "../draw/types.d.ts" */
-/** @import { RecordFeature, RecordKind } from "../ground/types.d.ts" */
+/** @import { GroundPage, RecordFeature, RecordKind } from "../ground/types.d.ts" */
+/** @import { Register } from "../register/types.d.ts" */
 
 /** @type {[string, string][]} */
 const KINDS = [
@@ -85,6 +90,7 @@ function details(feature) {
         properties.height_m && t("{height} above ground", { height: exactHeightText(properties.height_m) }),
       ),
       term(t("Length"), properties.length_m && lengthText(properties.length_m)),
+      term(t("Last inspection"), properties.inspected_at && whenText(properties.inspected_at)),
       term(t("Network"), properties.is_flyable ? "" : t("Not used for routing")),
       term(t("Place"), coordinateText(properties.centre)),
       term(t("Source"), sourceWords(feature)),
@@ -106,6 +112,85 @@ function details(feature) {
       ),
   ].filter((part) => part instanceof Node);
 }
+
+/** @type {GroundPage} */
+const page = readPage();
+const regionNames = new Map((page.regions ?? []).map(({ id, name }) => [id, name]));
+const filters = mountFilters(page.regions ?? [], () => records.load());
+
+/** @type {Register<AssetFeature>} */
+const REGISTER = {
+  key: "assets",
+  words: t("Assets"),
+  order: "name",
+  exports: "/assets/export",
+  summary: "/assets/summary",
+  canEdit: page.canCurate,
+  name: ({ properties }) => properties.label,
+  icon: ({ properties }) => properties.kind,
+  columns: [
+    { name: "label", words: t("Name"), sort: "name", cell: ({ properties }) => properties.label },
+    { name: "kind", words: t("Kind"), sort: "kind", cell: ({ properties }) => NAMES[properties.kind] },
+    {
+      name: "voltage",
+      words: t("Voltage"),
+      sort: "voltage",
+      isNumber: true,
+      cell: ({ properties }) => properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", "),
+    },
+    { name: "operator", words: t("Operator"), sort: "operator", cell: ({ properties }) => properties.operator },
+    { name: "line", words: t("Line"), cell: ({ properties }) => properties.line_label },
+    {
+      name: "inspected",
+      words: t("Last inspection"),
+      sort: "inspected",
+      cell: ({ properties }) => (properties.inspected_at ? dateText(properties.inspected_at) : t("never")),
+    },
+    { name: "detail", words: t("Details"), isOptional: true, cell: ({ properties }) => properties.detail },
+    {
+      name: "height",
+      words: t("Height"),
+      sort: "height",
+      isNumber: true,
+      isOptional: true,
+      cell: ({ properties }) => (properties.height_m ? exactHeightText(properties.height_m) : ""),
+    },
+    {
+      name: "length",
+      words: t("Length"),
+      sort: "length",
+      isNumber: true,
+      isOptional: true,
+      cell: ({ properties }) => (properties.length_m ? lengthText(properties.length_m) : ""),
+    },
+    {
+      name: "region",
+      words: t("Region"),
+      isOptional: true,
+      cell: ({ properties }) => (properties.region && regionNames.get(properties.region)) || "",
+    },
+    {
+      name: "routing",
+      words: t("Used for routing"),
+      isOptional: true,
+      cell: ({ properties }) => (properties.is_flyable ? t("yes") : t("no")),
+    },
+    { name: "external", words: t("External ID"), isOptional: true, cell: ({ properties }) => properties.external_id },
+    {
+      name: "changed",
+      words: t("Changed"),
+      sort: "changed",
+      isOptional: true,
+      cell: ({ properties }) => whenText(properties.updated_at),
+    },
+  ],
+  /** @param {AssetCounts} counts */
+  counted(counts) {
+    filters.counted(counts);
+    byId("asset-counts").textContent = countsText(counts.kinds);
+  },
+  edit: (marked) => editMarked(marked, () => records.reload()),
+};
 
 /** @type {RecordKind<AssetDetailFeature & RecordFeature, AssetFeature>} */
 const ASSETS = {
@@ -136,7 +221,8 @@ const ASSETS = {
     detail: properties.detail || NAMES[properties.kind],
     chip: properties.is_flyable ? "" : t("not flown"),
   }),
-  narrowed: () => ({ kind }),
+  narrowed: () => ({ kind, ...filters.narrowed() }),
+  register: REGISTER,
   noneFound: t("Other words, another kind, or a larger part of the map may have it."),
   noneYet: {
     words: t("No assets yet."),

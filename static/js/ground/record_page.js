@@ -62,6 +62,7 @@ class RecordPage {
       box: map.box,
       choose: (id) => this.choose(id),
       ring: (geometries) => this.#ring(geometries),
+      changed: () => this.#reload(),
       failed,
     });
     this.#view = new RecordView(kind, {
@@ -72,7 +73,11 @@ class RecordPage {
       fit: map.fit,
       reload: () => this.#reload(),
       edit: (feature) => this.#edit.start(feature),
-      left: () => this.#list.focusFirst(),
+      left: (id) => {
+        this.#list.table?.choose(null);
+        this.#list.focusRow(id);
+      },
+      chose: (id) => this.#list.table?.choose(id),
       failed,
     });
     this.#edit = new RecordEdit(map.map, kind, {
@@ -132,6 +137,11 @@ class RecordPage {
     });
   }
 
+  /** The list and the map again. */
+  reload() {
+    return this.#reload();
+  }
+
   async #reload() {
     this.#ground.map.refreshTiles();
     await this.load();
@@ -141,7 +151,7 @@ class RecordPage {
   #ring(geometries = []) {
     const { chosen } = this.#view;
     const own = chosen && !this.#edit.isOpen() ? [chosen.feature.geometry] : [];
-    this.#ground.map.ring([...own, ...geometries]);
+    this.#ground.map.ring([...own, ...(this.#list?.table?.marked() ?? []), ...geometries]);
   }
 
   #mountNewButton() {

@@ -39,7 +39,8 @@ export const ifMatch = (etag) => ({ headers: { "If-Match": etag ?? "" } });
  * @property {(box: Box) => void} fit
  * @property {() => Promise<void>} reload the list and the map
  * @property {(feature: Feature) => void} edit
- * @property {() => void} left called when the view is left for the list
+ * @property {(id: number | undefined) => void} left called when the view of a record is left for the list
+ * @property {(id: number) => void} chose called when a record is shown
  * @property {(error: unknown, again?: () => unknown) => void} failed
  */
 
@@ -68,6 +69,7 @@ export class RecordView {
       this.#draw(feature, /** @type {GroundHistoryPage} */ (past));
       this.#on.go("show");
       if (keepScroll) byId("side-scroll").scrollTop = scroll;
+      this.#on.chose(feature.id);
       this.#on.ring();
       if (!stay) this.#on.fit(boxOf(feature.geometry));
       rememberAddress(id);
@@ -79,11 +81,12 @@ export class RecordView {
   }
 
   back() {
+    const id = this.chosen?.feature.id;
     this.chosen = null;
     this.#on.ring();
     rememberAddress(null);
     this.#on.go("find");
-    this.#on.left();
+    this.#on.left(id);
   }
 
   /** @param {Feature} feature @param {GroundHistoryPage} past */

@@ -2,6 +2,7 @@
 
 import type { Shape, ShapeKind } from "../draw/types.d.ts";
 import type { Box, Geometry, MapPage, MapThing, PickKind, Position, ScreenPoint } from "../map/types.d.ts";
+import type { Register } from "../register/types.d.ts";
 
 /** What the server writes into a page of the curators. */
 export interface GroundPage extends MapPage {
@@ -72,10 +73,12 @@ export interface RecordKind<Feature extends RecordFeature, Row> {
   form(feature: Feature | null, choice: string, kept: Facts | null): RecordForm;
   row(feature: Row): ListRow;
   /** parameters of the list besides a text and what the map shows; "" narrows nothing */
-  narrowed(): Record<string, string>;
+  narrowed(): Record<string, string | string[]>;
   /** what to do where a search finds nothing, and while there is nothing yet */
   noneFound: string;
   noneYet: { words: string; begin: string };
+  /** the table under the map; without one the list is in the side */
+  register?: Register<Row>;
 }
 
 /** An edit that was not saved, as the browser keeps it. */

@@ -1,5 +1,6 @@
 """A curator corrects an asset, draws a zone, and takes changes back; of two at once nobody overwrites the other unseen."""
 
+import re
 from collections.abc import Callable
 
 import pytest
@@ -54,7 +55,7 @@ def test_a_fact_is_corrected_told_in_the_history_and_brought_back(visitor: Visit
     finds(page, VOLTAGE, VOLTAGE)
     page.get_by_role("button", name="Edit", exact=True).click()
     page.get_by_label("Name", exact=True).fill("Northern feeder")
-    page.get_by_label("Operator").fill("Test operator")
+    page.get_by_role("textbox", name="Operator").fill("Test operator")
     expect(figures(page)).to_contain_text("points")
     pictures(page, picture, "assets-edit")
     page.get_by_role("button", name="Save").click()
@@ -64,6 +65,43 @@ def test_a_fact_is_corrected_told_in_the_history_and_brought_back(visitor: Visit
     expect(page.locator(".history-list li").first).to_contain_text("Brought back to an earlier state")
     page.keyboard.press("Escape")
     expect(page.get_by_label("Find", exact=True)).to_be_visible()
+
+
+def test_the_register_filters_sorts_marks_edits_and_takes_back(visitor: Visitor, picture: Picture) -> None:
+    page = opens(visitor, "/assets")
+    total = asks(page, "/assets/summary")["total"]
+    count = page.locator(".register-count")
+    expect(count).to_have_text(f"{total:,} found")
+    page.get_by_label("Lines", exact=True).check(force=True)
+    lines = asks(page, "/assets/summary?kind=line")
+    expect(count).to_have_text(f"{lines['total']:,} found")
+    page.get_by_label("Voltage").select_option(str(lines["voltages"][0]["voltage_v"]))
+    number = lines["voltages"][0]["count"]
+    expect(count).to_have_text(f"{number:,} found")
+    page.get_by_role("columnheader", name="Operator").get_by_role("button").click()
+    expect(page.get_by_role("columnheader", name="Operator")).to_have_attribute("aria-sort", "ascending")
+    page.get_by_label("Mark all rows shown").check()
+    page.get_by_role("button", name=re.compile("^Edit .* asset")).click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("New value").fill("Register test")
+    pictures(page, picture, "assets-register")
+    dialog.get_by_role("button", name=re.compile("^Change ")).click()
+    expect(page.locator("tr.record-row").first).to_contain_text("Register test")
+    page.get_by_role("button", name="Undo", exact=True).click()
+    expect(page.locator("tr.record-row").first).not_to_contain_text("Register test")
+    page.get_by_role("row").get_by_role("link").first.click()
+    expect(page.locator("#record-show .record-title")).to_be_visible()
+    expect(page.locator("tr.record-row.chosen")).to_have_count(1)
+    with page.expect_download() as loaded:
+        page.get_by_role("button", name="Export").click()
+        page.get_by_role("button", name="GeoPackage").click()
+    assert loaded.value.suggested_filename == "assets.gpkg"
+
+
+def test_a_phone_has_the_list_instead_of_the_table(visitor: Visitor) -> None:
+    page = opens(visitor, "/assets", size=PHONE)
+    expect(page.locator("button.record-row").first).to_be_visible()
+    expect(page.locator(".register")).to_be_hidden()
 
 
 def a_user_writes(page: Page, asset: str, **facts: object) -> None:
@@ -81,7 +119,7 @@ def test_the_second_of_two_curators_is_asked_and_overwrites_nothing_unseen(visit
     page.get_by_role("button", name="Edit", exact=True).click()
     asset = page.url.split("id=")[1]
     a_user_writes(page, asset, operator="Theirs")
-    page.get_by_label("Operator").fill("Mine")
+    page.get_by_role("textbox", name="Operator").fill("Mine")
     page.get_by_role("button", name="Save").click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("Theirs → Mine")
@@ -97,7 +135,7 @@ def test_what_is_stored_over_a_change_of_others_leaves_their_other_facts(visitor
     page.get_by_role("button", name="Edit", exact=True).click()
     asset = page.url.split("id=")[1]
     a_user_writes(page, asset, operator="Theirs", name="Their name")
-    page.get_by_label("Operator").fill("Mine")
+    page.get_by_role("textbox", name="Operator").fill("Mine")
     page.get_by_role("button", name="Save").click()
     dialog = page.get_by_role("dialog")
     expect(dialog.locator("dd").last).to_have_text("Theirs → Mine")
