@@ -12,6 +12,7 @@ from missions.views.approvals import (
     MissionNearestZone,
     MissionRevoke,
 )
+from missions.views.asset_missions import AssetMissions
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
@@ -78,6 +79,7 @@ urlpatterns = [
     path("bases", views.BaseList.as_view(), name="api-bases"),
     path("bases/<int:base_id>", views.BaseDetail.as_view(), name="api-base"),
     path("bases/<int:base_id>/restore", views.BaseRestore.as_view(), name="api-base-restore"),
+    path("assets/<int:asset_id>/missions", AssetMissions.as_view(), name="api-asset-missions"),
     path("selections", SelectionList.as_view(), name="api-selections"),
     path("selections/<int:selection_id>", SelectionDetail.as_view(), name="api-selection"),
 ]

@@ -1,9 +1,13 @@
-"""Inspections of assets: targets that an aircraft has completed."""
+"""Inspections of assets: targets that an aircraft has completed, and the missions of an asset."""
 
-from django.db.models import Exists, OuterRef, QuerySet
+from typing import TYPE_CHECKING, TypedDict
+
+from django.db.models import Count, Exists, IntegerField, OuterRef, QuerySet, Subquery, Value
 from django.db.models.functions import Coalesce
 
-from missions.models import InspectionTarget, MissionUav, TargetState
+from inspection.models import Asset, AssetKind
+from inspection.selectors.picking import supports_of_line
+from missions.models import InspectionTarget, Mission, MissionUav, TargetState
 
 
 def inspections_of_assets(organisation_id: int) -> QuerySet[InspectionTarget]:
@@ -13,3 +17,33 @@ def inspections_of_assets(organisation_id: int) -> QuerySet[InspectionTarget]:
         mission__organisation=organisation_id, mission__deleted_at=None, state=TargetState.COMPLETE, asset__isnull=False
     )
     return done.filter(~Exists(simulated)).annotate(inspected_at=Coalesce("reached_at", "state_at"))
+
+
+class InspectedCounts(TypedDict):
+    """Columns that the query of an asset's missions computes."""
+
+    target_count: int
+    inspected_count: int
+    is_simulated: bool
+
+
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    MissionOfAsset = WithAnnotations[Mission, InspectedCounts]
+else:
+    MissionOfAsset = Mission
+
+
+def missions_of_asset(organisation_id: int, asset: Asset) -> QuerySet[MissionOfAsset]:
+    """Return missions with targets at the asset or, of a line, at its supports, and the number of these targets."""
+    keys = (asset.pk, *(supports_of_line(asset) if asset.kind == AssetKind.LINE else ()))
+    here = InspectionTarget.objects.filter(mission=OuterRef("pk"), asset__in=keys).order_by().values("mission")
+    count = here.annotate(count=Count("pk")).values("count")
+    done = here.filter(state=TargetState.COMPLETE).annotate(count=Count("pk")).values("count")
+    missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None)
+    return missions.annotate(
+        target_count=Coalesce(Subquery(count), Value(0), output_field=IntegerField()),
+        inspected_count=Coalesce(Subquery(done), Value(0), output_field=IntegerField()),
+        is_simulated=Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav__is_simulated=True)),
+    ).filter(target_count__gt=0)

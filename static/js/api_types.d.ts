@@ -550,6 +550,27 @@ export interface components {
          * @enum {string}
          */
         AssetKind: "tower" | "line" | "railway" | "bridge";
+        AssetMission: {
+            /** Format: uuid */
+            id: string;
+            name: string;
+            state: components["schemas"]["MissionState"];
+            /** @description simulated UAVs fly it: it inspects nothing */
+            is_simulated: boolean;
+            /** Format: date-time */
+            departs_at: string | null;
+            /** Format: date-time */
+            created_at: string;
+            /** @description targets at the asset and, of a line, at its supports */
+            target_count: number;
+            /** @description of these, the completed ones */
+            inspected_count: number;
+        };
+        AssetMissionPage: {
+            results: components["schemas"]["AssetMission"][];
+            /** @description address of the next page */
+            next: string | null;
+        };
         AssetProperties: {
             kind: components["schemas"]["AssetKind"];
             subtype: string;
@@ -8126,6 +8147,8 @@ export type AssetDetailProperties = components['schemas']['AssetDetailProperties
 export type AssetFeature = components['schemas']['AssetFeature'];
 export type AssetInputRequest = components['schemas']['AssetInputRequest'];
 export type AssetKind = components['schemas']['AssetKind'];
+export type AssetMission = components['schemas']['AssetMission'];
+export type AssetMissionPage = components['schemas']['AssetMissionPage'];
 export type AssetProperties = components['schemas']['AssetProperties'];
 export type Base = components['schemas']['Base'];
 export type BasePage = components['schemas']['BasePage'];

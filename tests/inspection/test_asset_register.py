@@ -21,7 +21,7 @@ from inspection.services.imports.regions import join_region
 from missions.models import InspectionTarget, Mission, MissionUav, TargetState, Uav
 from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import bridge, line, railway, tower
-from workspace.models import AuditEntry, Role, User
+from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
 SPAN = ((10.0, 56.0), (10.01, 56.0), (10.02, 56.0))
@@ -288,3 +288,23 @@ def test_entries_of_other_changes_are_not_undone_in_part(client: Client) -> None
     assert post(client, "edits/undo", {"entries": [entry.pk]}).json() == {"undone": 0, "kept": 1}
     row.refresh_from_db()
     assert row.name == "Neu"
+
+
+# Missions of an asset
+
+
+def test_a_line_has_the_missions_of_its_supports_and_those_of_others_stay_hidden(client: Client, curator: User) -> None:
+    now = timezone.now().replace(microsecond=0)
+    of_line, (first, second, _third) = a_line()
+    inspect(curator, first, now)
+    inspect(curator, of_line, now, simulated=True, state=TargetState.PENDING)
+    inspect(curator, tower((11.0, 56.0)), now)
+    stranger = a_user(Role.OPERATOR, organisation=Organisation.objects.create(name="Other"))
+    inspect(stranger, second, now)
+    rows = client.get(f"/api/v1/assets/{of_line.pk}/missions").json()["results"]
+    assert [(row["target_count"], row["inspected_count"], row["is_simulated"]) for row in rows] == [(1, 0, True), (1, 1, False)]
+    assert len(client.get(f"/api/v1/assets/{first.pk}/missions").json()["results"]) == 1
+    assert client.get(f"/api/v1/assets/{second.pk}/missions").json()["results"] == []
+    assert client.get("/api/v1/assets/999/missions").status_code == 404
+    Mission.objects.update(deleted_at=now)
+    assert client.get(f"/api/v1/assets/{of_line.pk}/missions").json()["results"] == []

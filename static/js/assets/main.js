@@ -1,6 +1,6 @@
 /** The page "Assets": search, view, draw, correct. */
 
-import { byId, h, segments, term } from "../dom.js";
+import { byId, find, h, segments, term } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { countsText } from "../map/look/region_words.js";
 import { readPage } from "../page/chrome.js";
@@ -9,6 +9,7 @@ import { coordinateText, dateText, exactHeightText, lengthText, voltageText, whe
 import { editMarked } from "./bulk_edit.js";
 import { mountFilters } from "./filters.js";
 import { assetForm } from "./form.js";
+import { inspectionsPart, planButton } from "./inspections.js";
 
 /** @import { AssetCounts, AssetDetailFeature, AssetDetailProperties, AssetFeature } from "../api_types.d.ts" */
 /** @import { ShapeKind } from "../draw/types.d.ts" */
@@ -215,6 +216,14 @@ const ASSETS = {
   title: (feature) => feature.properties.label,
   details,
   form: assetForm,
+  act: (feature) => (page.canPlan && feature.properties.is_flyable ? planButton(feature) : null),
+  more: (feature) =>
+    inspectionsPart(feature, (id, label) => {
+      kind = ""; // a line has towers, poles and portals
+      find(document, "input[name=kind][value='']", HTMLInputElement).checked = true;
+      records.back();
+      filters.chooseLine(id, label);
+    }),
   row: ({ properties }) => ({
     icon: properties.kind,
     name: properties.label,

@@ -120,6 +120,11 @@ class RecordPage {
     if (!this.#edit.isOpen()) await this.#view.choose(id, how);
   }
 
+  /** The list instead of a record. */
+  back() {
+    this.#view.back();
+  }
+
   async start() {
     const { page, map, open } = this.#ground;
     await open({

@@ -91,7 +91,8 @@ export class RecordView {
 
   /** @param {Feature} feature @param {GroundHistoryPage} past */
   #draw(feature, past) {
-    const { backWords, title, details } = this.#kind;
+    const { backWords, title, details, act, more } = this.#kind;
+    const own = feature.properties.vanished_at ? null : act?.(feature);
     const back = h("button", { type: "button", class: "text-button back", onclick: () => this.back() });
     setChildren(back, icon("arrow-left", "small"), backWords);
     setChildren(
@@ -99,14 +100,15 @@ export class RecordView {
       back,
       h("h2", { class: "record-title", tabindex: -1 }, title(feature)),
       details(feature),
-      h("div", { class: "record-acts" }, this.#on.canCurate ? this.#acts(feature) : []),
+      h("div", { class: "record-acts" }, own, this.#on.canCurate ? this.#acts(feature, Boolean(own)) : []),
+      more?.(feature),
       h("h3", {}, icon("history", "small"), t("History")),
       this.#historyPart(past),
     );
   }
 
-  /** @param {Feature} feature */
-  #acts(feature) {
+  /** @param {Feature} feature @param {boolean} hasPrimary whether another act is the next one */
+  #acts(feature, hasPrimary) {
     const isGone = Boolean(feature.properties.vanished_at);
     const edit = () => this.#on.edit(feature);
     const follow = () => this.#follow();
@@ -114,7 +116,7 @@ export class RecordView {
     return [
       h(
         "button",
-        { type: "button", class: "button primary", onclick: edit, disabled: isGone },
+        { type: "button", class: hasPrimary ? "button" : "button primary", onclick: edit, disabled: isGone },
         icon("pencil", "small"),
         t("Edit"),
       ),

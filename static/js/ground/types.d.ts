@@ -8,6 +8,7 @@ import type { Register } from "../register/types.d.ts";
 export interface GroundPage extends MapPage {
   userId: number;
   canCurate: boolean;
+  canPlan: boolean;
   extent: Box | null;
 }
 
@@ -70,6 +71,10 @@ export interface RecordKind<Feature extends RecordFeature, Row> {
   factsOfBody(body: Facts): Facts;
   title(feature: Feature): string;
   details(feature: Feature): (Node | string)[];
+  /** the next act with one, where the user may; it is not offered for a deleted one */
+  act?(feature: Feature): HTMLElement | null;
+  /** what is shown between its facts and its history */
+  more?(feature: Feature): HTMLElement | null;
   form(feature: Feature | null, choice: string, kept: Facts | null): RecordForm;
   row(feature: Row): ListRow;
   /** parameters of the list besides a text and what the map shows; "" narrows nothing */

@@ -1,0 +1,133 @@
+/** What inspects an asset: its missions, of a line its towers and spans, and the way to a new mission. */
+
+import { ApiError, freshKey, get, post } from "../api.js";
+import { h, icon, setChildren, term } from "../dom.js";
+import { STATES } from "../missions/rows.js";
+import { toast } from "../page/toast.js";
+import { t, tn } from "../text.js";
+import { dateText, lengthText, numberText } from "../units.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { AssetCounts, AssetDetailFeature, AssetMission, AssetMissionPage } from "../api_types.d.ts" */
+
+const ENDED = ["completed", "aborted", "failed"];
+
+/** The button that opens a new mission with the asset as target. @param {AssetDetailFeature} feature */
+export function planButton({ id, properties }) {
+  const words = properties.kind === "line" ? t("Plan an inspection of this line") : t("Plan an inspection");
+  const key = freshKey();
+  const button = h("button", { type: "button", class: "button primary" }, icon("list-plus", "small"), words);
+  button.addEventListener("click", async () => {
+    button.disabled = true;
+    const body = {
+      name: t("Inspection of {name}", { name: properties.label }).slice(0, 200),
+      targets: [{ asset: id }],
+    };
+    try {
+      const { data } = /** @type {Answer<{ id: string }>} */ (
+        await post("/missions", body, { headers: { "Idempotency-Key": key } })
+      );
+      location.assign(`/missions/${data.id}`);
+    } catch (error) {
+      button.disabled = false;
+      if (!(error instanceof ApiError)) throw error;
+      toast(error.message);
+    }
+  });
+  return button;
+}
+
+/**
+ * The missions of an asset, and of a line its towers and spans. They are read once the part is shown.
+ *
+ * @param {AssetDetailFeature} feature
+ * @param {(id: number, label: string) => void} showSupports in the register
+ */
+export function inspectionsPart(feature, showSupports) {
+  const isLine = feature.properties.kind === "line";
+  const supports = h("div", {}, h("div", { class: "skeleton" }));
+  const missions = h("div", {}, h("div", { class: "skeleton" }));
+  const part = h(
+    "div",
+    {},
+    isLine && h("h3", {}, icon("tower", "small"), t("Towers and spans")),
+    isLine && supports,
+    h("h3", {}, icon("list-checks", "small"), t("Missions")),
+    missions,
+  );
+  fill(missions, () => missionsOf(feature.id));
+  if (isLine) fill(supports, () => supportsOf(feature, showSupports));
+  return part;
+}
+
+/** @param {HTMLElement} element @param {() => Promise<Node[]>} make */
+async function fill(element, make) {
+  try {
+    setChildren(element, await make());
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    setChildren(element, h("p", { class: "caption" }, error.message));
+  }
+}
+
+/** @param {AssetDetailFeature} feature @param {(id: number, label: string) => void} showSupports */
+async function supportsOf({ id, properties }, showSupports) {
+  const [all, inspected] = await Promise.all(
+    ["", "&inspected=true"].map(
+      async (more) => /** @type {Answer<AssetCounts>} */ (await get(`/assets/summary?line=${id}${more}`)).data.total,
+    ),
+  );
+  const spans = Math.max(all - 1, 0);
+  const show = () => showSupports(id, properties.label);
+  return [
+    h(
+      "dl",
+      { class: "facts" },
+      term(t("Towers and poles"), numberText(all)),
+      term(t("Spans"), numberText(spans)),
+      term(t("Average span"), spans && properties.length_m && lengthText(properties.length_m / spans)),
+      term(t("Inspected"), all && t("{done} of {all}", { done: numberText(inspected), all: numberText(all) })),
+    ),
+    ...(all
+      ? [h("button", { type: "button", class: "text-button", onclick: show }, t("Show the towers in the list"))]
+      : []),
+  ];
+}
+
+/** @param {number} id */
+async function missionsOf(id) {
+  const { data } = /** @type {Answer<AssetMissionPage>} */ (await get(`/assets/${id}/missions`));
+  if (!data.results.length) return [h("p", { class: "caption" }, t("No mission inspects it yet."))];
+  const more = data.next
+    ? [h("p", { class: "caption" }, t("The newest {count} are shown.", { count: data.results.length }))]
+    : [];
+  return [h("ol", { class: "asset-missions" }, data.results.map(missionRow)), ...more];
+}
+
+/** @param {AssetMission} mission */
+function missionRow(mission) {
+  const {
+    id,
+    name,
+    state,
+    departs_at: departs,
+    created_at: created,
+    target_count: count,
+    inspected_count: done,
+  } = mission;
+  const isEnded = ENDED.includes(state);
+  const facts = [
+    STATES[state],
+    dateText(departs ?? created),
+    isEnded
+      ? t("{done} of {all} inspected", { done: numberText(done), all: numberText(count) })
+      : tn(count, "{count} target", "{count} targets", { count: numberText(count) }),
+    mission.is_simulated && t("simulated"),
+  ];
+  return h(
+    "li",
+    {},
+    h("a", { href: isEnded ? `/missions/${id}/report` : `/missions/${id}`, translate: "no" }, name),
+    h("span", { class: "caption" }, facts.filter(Boolean).join(" · ")),
+  );
+}
