@@ -296,6 +296,30 @@ def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_un
     expect(undo).to_be_disabled()
 
 
+def test_the_targets_of_a_folded_line_are_passed_and_removed_at_once_by_keyboard(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    _line, supports = longest_line(page)
+    page.keyboard.press("i")
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("References, names or OSM ids").fill("\n".join(osm_of(page, support["id"]) for support in supports[:16]))
+    dialog.get_by_role("button", name="Look them up").click()
+    dialog.get_by_role("button", name="Add 16 targets").click()
+    head = page.locator("#target-list .group-head").first
+    size = int((head.locator("small").text_content() or "").split()[0])
+    head.focus()
+    page.keyboard.press("Enter")
+    expect(head).to_have_attribute("aria-expanded", "false")
+    expect(rows(page)).to_have_count(16 - size + 1)
+    page.keyboard.press("ArrowDown")
+    if size < 16:
+        expect(head).not_to_be_focused()
+        page.keyboard.press("ArrowUp")
+    expect(head).to_be_focused()
+    page.keyboard.press("Delete")
+    expect(page.get_by_text(f"{size} targets removed.")).to_be_visible()
+    expect(rows(page)).to_have_count(16 - size)
+
+
 @pytest.mark.long
 def test_a_selection_is_kept_loaded_renamed_deleted_and_brought_back(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
