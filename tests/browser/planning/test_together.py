@@ -8,6 +8,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, at_zoom, stores_mission, targets, wait_for_map
+from tests.browser.planning.test_planning import opens_mission as opens_planned
 from tests.browser.planning.test_unsaved_changes import forgives, opens_mission, picks_from_the_search, removes_first_target
 from tests.browser.regions import region
 from tests.cases import long
@@ -45,6 +46,18 @@ def test_what_one_changes_arrives_at_the_other_by_itself(visitor: Visitor) -> No
     expect(theirs.locator("#target-list .target")).to_have_count(3)
     mine.goto("/")
     expect(theirs.locator("#others")).to_be_hidden()
+
+
+def test_a_save_takes_no_focus_from_the_notices(visitor: Visitor) -> None:
+    mine = visitor.signs_in("opal")
+    opens_planned(mine, "Out of reach", more=[{"position": region.far_away}])
+    remove = mine.locator("#notices").get_by_role("button", name="Remove it")
+    remove.focus()
+    theirs = visitor.signs_in("rory")
+    opens_mission(theirs, mine.url.split("#")[0])
+    renames(theirs, "Out of reach, seen by two")
+    expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("Out of reach, seen by two")
+    expect(remove).to_be_focused()
 
 
 def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visitor) -> None:
