@@ -13,6 +13,7 @@ from inspection.views import (
     regions,
     terrain,
     uploads,
+    zone_register,
     zone_sets,
     zones,
 )
@@ -33,6 +34,8 @@ urlpatterns = [
     path("assets/<int:asset_id>/supports", picking.LineSupports.as_view(), name="api-line-supports"),
     path("assets/<int:asset_id>/bridges", picking.RailwayBridgesView.as_view(), name="api-railway-bridges"),
     path("zones", zones.ZoneList.as_view(), name="api-zones"),
+    path("zones/summary", zone_register.ZoneCountsView.as_view(), name="api-zone-summary"),
+    re_path(r"^zones/export\.(?P<ending>csv|geojson|gpkg)$", zone_register.ZoneFile.as_view(), name="api-zone-file"),
     path("zones/<int:zone_id>", zones.ZoneDetail.as_view(), name="api-zone"),
     path("zones/<int:zone_id>/history", history.ZoneHistory.as_view(), name="api-zone-history"),
     path("zones/<int:zone_id>/revert", history.ZoneRevert.as_view(), name="api-zone-revert"),

@@ -30,6 +30,26 @@ class AssetCountsSerializer(serializers.Serializer):
     operators = OperatorCountSerializer(many=True, help_text="the 200 with most assets")
 
 
+class ValueCountSerializer(serializers.Serializer):
+    value = serializers.CharField(help_text="as the source writes it; empty: not stated")
+    count = serializers.IntegerField()
+
+
+class ZoneSetCountSerializer(serializers.Serializer):
+    zone_set = serializers.IntegerField(allow_null=True, help_text="null: drawn in Spanwise")
+    name = serializers.CharField()
+    count = serializers.IntegerField()
+
+
+class ZoneCountsSerializer(serializers.Serializer):
+    """Numbers of zones. Those of a fact disregard the filter by this fact, so that another value can be chosen."""
+
+    total = serializers.IntegerField(help_text="that match all filters")
+    restrictions = ValueCountSerializer(many=True)
+    reasons = ValueCountSerializer(many=True, help_text="a zone of several reasons counts at each")
+    zone_sets = ZoneSetCountSerializer(many=True)
+
+
 class BulkValuesSerializer(serializers.Serializer):
     operator = serializers.CharField(max_length=255, allow_blank=True, required=False)
     voltages_v = serializers.ListField(

@@ -4,6 +4,8 @@ import json
 from datetime import datetime
 from typing import Any
 
+import shapely
+from django.utils import timezone
 from django.utils.formats import date_format
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
@@ -12,6 +14,7 @@ from rest_framework import serializers
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import HeightReference
 from inspection.selectors.assets import DrawnZone
+from inspection.selectors.register.zones import activity_of
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
 from inspection.zones.schedule import DAYS, EVENTS, Schedule, checked_schedule
 from workspace.jobs.serializers import Declared
@@ -145,6 +148,8 @@ class ZonePropertiesSerializer(serializers.Serializer):
     circle = CircleField(allow_null=True, help_text="centre and radius_m, where the source gives a circle; the polygon encloses it")
     schedule = ScheduleField(allow_null=True, help_text="when it applies: periods as ED-318 writes them; null = always")
     schedule_words = serializers.CharField(help_text="the same for people")
+    is_active = serializers.BooleanField(help_text="it applies now, in UTC and without the margins of planning")
+    changes_at = serializers.DateTimeField(allow_null=True, help_text="when it ends or begins to apply; null: not in the next 8 days")
     updated_at = serializers.DateTimeField()
     source: Declared = SourceSerializer(allow_null=True)
 
@@ -161,6 +166,8 @@ ZoneCollectionSerializer = collection_serializer("ZoneCollection", ZoneFeatureSe
 
 
 def zone_feature(zone: DrawnZone) -> dict[str, Any]:
+    box = (-180.0, -90.0, 180.0, 90.0) if zone.schedule is None else shapely.from_geojson(zone.geometry_json).bounds
+    activity = activity_of(zone.schedule, box, timezone.now())
     properties = {
         "name": zone.name,
         "identifier": zone.identifier,
@@ -174,6 +181,8 @@ def zone_feature(zone: DrawnZone) -> dict[str, Any]:
         "circle": zone.circle,
         "schedule": zone.schedule,
         "schedule_words": schedule_words(zone.schedule),
+        "is_active": activity.is_active,
+        "changes_at": activity.changes_at,
         "updated_at": zone.updated_at,
         "source": source_json(zone.zone_set.data_import if zone.zone_set else None),
     }

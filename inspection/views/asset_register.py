@@ -2,21 +2,15 @@
 
 from collections.abc import Iterator
 from itertools import islice
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from django.http import FileResponse, HttpResponseBase, StreamingHttpResponse
-from django.utils import timezone
+from django.http import HttpResponseBase
 from django.utils.translation import gettext as _
-from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.exporters.geopackage import write_geopackage
 from inspection.exporters.rows import Columns, ExportRow
-from inspection.exporters.text_files import csv_pieces, geojson_pieces
 from inspection.models import Asset, AssetKind
 from inspection.selectors import references_of
 from inspection.selectors.register.assets import AssetFilter, RegisterFacts, assets_that_match, counts_that_match, register_facts
@@ -30,6 +24,7 @@ from inspection.serializers.register import (
     BulkUndoSerializer,
 )
 from inspection.services.bulk_edits import change_assets, undo_changes
+from inspection.views.export_files import FILES, FORMAT, MAX_EXPORTED, file_response
 from inspection.views.parameters import invalid
 from inspection.views.register_filters import ASSET_FILTERS, asset_filter
 from workspace.api.errors import ApiProblem
@@ -37,7 +32,6 @@ from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer
 from workspace.api.signed_in import SignedInRequest
 
-MAX_EXPORTED = 200_000  # as many as a file of assets may bring in
 BATCH = 2_000
 KINDS_WITH = {
     "voltages_v": {AssetKind.TOWER, AssetKind.LINE},
@@ -50,9 +44,6 @@ COLUMNS: Columns = {
     "circuits": "INTEGER", "height_m": "REAL", "length_m": "REAL", "is_flyable": "BOOLEAN", "line_label": "TEXT", "osm": "TEXT",
     "external_id": "TEXT", "inspected_at": "DATETIME",
 }  # fmt: skip
-MEDIA_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json", "gpkg": "application/geopackage+sqlite3"}
-FORMAT = OpenApiParameter("ending", str, OpenApiParameter.PATH, enum=[*MEDIA_TYPES], description="how the file ends")
-FILES: dict[Any, Any] = {(200, kind.partition(";")[0]): OpenApiTypes.BINARY for kind in MEDIA_TYPES.values()}
 
 
 class AssetCountsView(APIView):
@@ -94,21 +85,6 @@ class AssetFile(APIView):
             most = {"most": f"{MAX_EXPORTED:,}"}
             raise ApiProblem(409, "too_many", _("More than %(most)s assets match. Narrow the filters, such as by region.") % most)
         return file_response(_rows(wanted), COLUMNS, ending, "assets")
-
-
-def file_response(rows: Iterator[ExportRow], columns: Columns, ending: str, stem: str) -> HttpResponseBase:
-    response: HttpResponseBase
-    if ending == "gpkg":
-        with TemporaryDirectory() as folder:
-            path = Path(folder) / f"{stem}.gpkg"
-            write_geopackage(path, rows, columns, timezone.now())
-            response = FileResponse(path.open("rb"), content_type=MEDIA_TYPES[ending])  # an open file outlives its name
-    else:
-        pieces = csv_pieces if ending == "csv" else geojson_pieces
-        response = StreamingHttpResponse(pieces(rows, columns), content_type=MEDIA_TYPES[ending])
-    response["Content-Disposition"] = f'attachment; filename="{stem}.{ending}"'
-    response["Cache-Control"] = "private, no-cache"
-    return response
 
 
 def _rows(wanted: AssetFilter) -> Iterator[ExportRow]:

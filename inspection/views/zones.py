@@ -1,26 +1,23 @@
 """No-fly zones: the list and one of them."""
 
-from drf_spectacular.utils import OpenApiParameter, extend_schema
+from drf_spectacular.utils import extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection import selectors
 from inspection.models import NoFlyZone
+from inspection.selectors.register.zones import zones_in_order, zones_that_match
 from inspection.serializers.edits import ZoneInputSerializer
 from inspection.serializers.zones import ZoneCollectionSerializer, ZoneDetailFeatureSerializer, zone_feature
 from inspection.services import delete_zone, save_zone
 from inspection.views.edits import Curated, answer, with_values, zone_now
-from inspection.views.parameters import BOX, box_of, text_of
+from inspection.views.register_filters import ZONE_FILTERS, ZONE_SORT, ZONE_SORTS, zone_filter
 from workspace.api.idempotency import idempotent
-from workspace.api.paging import changed_since, page_of
+from workspace.api.paging import asked_choice, changed_since, page_of
 from workspace.api.permissions import CURATORS
 from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS
 from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
-from workspace.api.whole_numbers import WholeNumber
-
-ZONE_SET = WholeNumber("zone_set", "the id of a set")
 
 
 class ZoneList(APIView):
@@ -30,17 +27,19 @@ class ZoneList(APIView):
         operation_id="list_zones",
         summary="No-fly zones",
         parameters=[
-            BOX,
-            OpenApiParameter("text", str, description="words in name, identifier, restriction or reason"),
-            ZONE_SET.documented,
+            *ZONE_FILTERS,
+            ZONE_SORT,
             CHANGED_SINCE,
             *PAGE_PARAMETERS,
         ],
         responses=ZoneCollectionSerializer,
     )
     def get(self, request: Request) -> Response:
-        found = selectors.zones(box=box_of(request), text=text_of(request), zone_set=ZONE_SET.asked(request))
-        page = page_of(request, changed_since(request, found))
+        order: tuple[str, ...] = ("pk",)
+        found = changed_since(request, zones_that_match(zone_filter(request)))
+        if sort := asked_choice(request, "sort", ZONE_SORTS):
+            found, order = zones_in_order(found, sort)
+        page = page_of(request, found, order=order)
         features = [zone_feature(zone) for zone in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 

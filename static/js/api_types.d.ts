@@ -7587,6 +7587,11 @@ export interface components {
             /** @description address of the next page */
             next: string | null;
         };
+        ValueCount: {
+            /** @description as the source writes it; empty: not stated */
+            value: string;
+            count: number;
+        };
         VehicleReport: {
             /** Format: date-time */
             at: string;
@@ -7898,6 +7903,15 @@ export interface components {
             /** @description address of the next page */
             next: string | null;
         };
+        /** @description Numbers of zones. Those of a fact disregard the filter by this fact, so that another value can be chosen. */
+        ZoneCounts: {
+            /** @description that match all filters */
+            total: number;
+            restrictions: components["schemas"]["ValueCount"][];
+            /** @description a zone of several reasons counts at each */
+            reasons: components["schemas"]["ValueCount"][];
+            zone_sets: components["schemas"]["ZoneSetCount"][];
+        };
         ZoneDetailFeature: {
             type: components["schemas"]["FeatureType"];
             id: number;
@@ -7924,6 +7938,13 @@ export interface components {
             schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description the same for people */
             schedule_words: string;
+            /** @description it applies now, in UTC and without the margins of planning */
+            is_active: boolean;
+            /**
+             * Format: date-time
+             * @description when it ends or begins to apply; null: not in the next 8 days
+             */
+            changes_at: string | null;
             /** Format: date-time */
             updated_at: string;
             source: components["schemas"]["Source"] | null;
@@ -8009,6 +8030,13 @@ export interface components {
             schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description the same for people */
             schedule_words: string;
+            /** @description it applies now, in UTC and without the margins of planning */
+            is_active: boolean;
+            /**
+             * Format: date-time
+             * @description when it ends or begins to apply; null: not in the next 8 days
+             */
+            changes_at: string | null;
             /** Format: date-time */
             updated_at: string;
             source: components["schemas"]["Source"] | null;
@@ -8024,6 +8052,12 @@ export interface components {
             version_count: number;
             source: components["schemas"]["ZoneSetSource"] | null;
             subscription: components["schemas"]["ZoneSubscription"] | null;
+        };
+        ZoneSetCount: {
+            /** @description null: drawn in Spanwise */
+            zone_set: number | null;
+            name: string;
+            count: number;
         };
         ZoneSetPage: {
             results: components["schemas"]["ZoneSet"][];
@@ -8637,6 +8671,7 @@ export type Upload = components['schemas']['Upload'];
 export type UploadInputRequest = components['schemas']['UploadInputRequest'];
 export type User = components['schemas']['User'];
 export type UserPage = components['schemas']['UserPage'];
+export type ValueCount = components['schemas']['ValueCount'];
 export type VehicleReport = components['schemas']['VehicleReport'];
 export type VehicleText = components['schemas']['VehicleText'];
 export type VehicleTextPage = components['schemas']['VehicleTextPage'];
@@ -8661,6 +8696,7 @@ export type WithinOutput = components['schemas']['WithinOutput'];
 export type ZoneAlong = components['schemas']['ZoneAlong'];
 export type ZoneApproach = components['schemas']['ZoneApproach'];
 export type ZoneCollection = components['schemas']['ZoneCollection'];
+export type ZoneCounts = components['schemas']['ZoneCounts'];
 export type ZoneDetailFeature = components['schemas']['ZoneDetailFeature'];
 export type ZoneDetailProperties = components['schemas']['ZoneDetailProperties'];
 export type ZoneDetour = components['schemas']['ZoneDetour'];
@@ -8670,6 +8706,7 @@ export type ZoneMargins = components['schemas']['ZoneMargins'];
 export type ZoneName = components['schemas']['ZoneName'];
 export type ZoneProperties = components['schemas']['ZoneProperties'];
 export type ZoneSet = components['schemas']['ZoneSet'];
+export type ZoneSetCount = components['schemas']['ZoneSetCount'];
 export type ZoneSetPage = components['schemas']['ZoneSetPage'];
 export type ZoneSetSource = components['schemas']['ZoneSetSource'];
 export type ZoneSetVersion = components['schemas']['ZoneSetVersion'];

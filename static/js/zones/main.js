@@ -1,22 +1,21 @@
 /** The page "No-fly zones": search, view, draw, correct; sets and their sources. */
 
-import { byId, find, h, icon, segments, setChildren, term } from "../dom.js";
+import { byId, find, h, segments, term } from "../dom.js";
 import { scheduleText } from "../domain/schedule_words.js";
-import { bandDrawing, heightsText } from "../domain/zone_heights.js";
+import { bandDrawing, heightsText, limitText } from "../domain/zone_heights.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
-import { coordinateText, lengthText, minutesAheadOfUtc, whenText, zoneText } from "../units.js";
+import { clockText, coordinateText, dayText, lengthText, minutesAheadOfUtc, whenText, zoneText } from "../units.js";
+import { mountZoneFilters } from "./filters.js";
 import { restrictionHint, zoneForm } from "./form.js";
 import { mountImportButton } from "./import_button.js";
 import { weekDrawing } from "./schedule_editor.js";
 import { mountSetsPanel, validityText } from "./sets_panel.js";
 
-/** @import { Limit, ZoneDetailFeature, ZoneFeature, ZoneSet } from "../api_types.d.ts" */
+/** @import { Limit, ZoneCounts, ZoneDetailFeature, ZoneFeature } from "../api_types.d.ts" */
 /** @import { Facts, RecordFeature, RecordKind } from "../ground/types.d.ts" */
-
-/** That the list is narrowed to. @type {ZoneSet | null} */
-let zoneSet = null;
+/** @import { Register } from "../register/types.d.ts" */
 
 /** @param {ZoneDetailFeature} feature @returns {Facts} */
 function factsOf({ properties, geometry }) {
@@ -104,6 +103,76 @@ function details({ properties }) {
   ].filter((part) => part instanceof Node);
 }
 
+const filters = mountZoneFilters(() => records.load());
+
+/** "now, until 24 Nov, 18:00", "from 24 Nov, 08:00". @param {ZoneFeature} zone */
+function activityText({ properties: { schedule, is_active: isActive, changes_at: changes } }) {
+  if (!schedule) return t("always");
+  const time = changes && `${dayText(changes)}, ${clockText(changes)}`;
+  if (isActive) return time ? t("now, until {time}", { time }) : t("now");
+  return time ? t("from {time}", { time }) : t("not in the next 8 days");
+}
+
+/** @param {string} words as the source writes them */
+const statedWords = (words) => (words ? plainWords(words) : t("not stated"));
+
+/** @param {Limit | null} limit @param {"lower" | "upper"} side */
+const heightCell = (limit, side) => (limit ? limitText(limit, side) : t("not stated"));
+
+/** @type {Register<ZoneFeature>} */
+const REGISTER = {
+  key: "zones",
+  words: t("No-fly zones"),
+  order: "name",
+  exports: "/zones/export",
+  summary: "/zones/summary",
+  canEdit: false,
+  name: ({ properties }) => properties.name,
+  icon: () => "zone",
+  columns: [
+    { name: "name", words: t("Name"), sort: "name", cell: ({ properties }) => properties.name },
+    { name: "kind", words: t("Kind"), cell: ({ properties }) => (properties.circle ? t("Circle") : t("Area")) },
+    {
+      name: "restriction",
+      words: t("Restriction"),
+      sort: "restriction",
+      cell: ({ properties }) => statedWords(properties.restriction),
+    },
+    { name: "reason", words: t("Reason"), sort: "reason", cell: ({ properties }) => statedWords(properties.reason) },
+    {
+      name: "lower",
+      words: t("Lower limit"),
+      sort: "lower",
+      cell: ({ properties }) => heightCell(properties.lower_limit, "lower"),
+    },
+    {
+      name: "upper",
+      words: t("Upper limit"),
+      sort: "upper",
+      cell: ({ properties }) => heightCell(properties.upper_limit, "upper"),
+    },
+    { name: "applies", words: t("Applies"), cell: activityText },
+    {
+      name: "set",
+      words: t("Zone set"),
+      sort: "set",
+      cell: ({ properties }) => properties.zone_set ?? t("Drawn in Spanwise"),
+    },
+    { name: "identifier", words: t("Identifier"), isOptional: true, cell: ({ properties }) => properties.identifier },
+    { name: "schedule", words: t("Schedule"), isOptional: true, cell: ({ properties }) => properties.schedule_words },
+    {
+      name: "changed",
+      words: t("Changed"),
+      sort: "changed",
+      isOptional: true,
+      cell: ({ properties }) => whenText(properties.updated_at),
+    },
+  ],
+  /** @param {ZoneCounts} counts */
+  counted: (counts) => filters.counted(counts),
+  edit: async () => false,
+};
+
 /** @type {RecordKind<ZoneDetailFeature & RecordFeature, ZoneFeature>} */
 const ZONES = {
   path: "/zones",
@@ -131,7 +200,8 @@ const ZONES = {
     detail: heightsText(properties),
     chip: properties.schedule ? t("at times") : "",
   }),
-  narrowed: () => ({ zone_set: zoneSet ? String(zoneSet.id) : "" }),
+  narrowed: () => filters.narrowed(),
+  register: REGISTER,
   noneFound: t("Other words, or a larger part of the map may have it."),
   noneYet: {
     words: t("No zones yet."),
@@ -139,22 +209,6 @@ const ZONES = {
   },
 };
 const records = mountRecordPage(ZONES);
-
-/** Shows which set the list is narrowed to. */
-function showSet() {
-  const name = zoneSet?.name;
-  const clear = () => {
-    zoneSet = null;
-    showSet();
-    records.load();
-  };
-  const label = t("No longer only {name}", { name });
-  const button = { type: "button", class: "icon-button tight", "aria-label": label, onclick: clear };
-  setChildren(
-    byId("zone-set-filter"),
-    zoneSet && h("span", { class: "chip" }, name, h("button", button, icon("x", "small"))),
-  );
-}
 
 const importButton = byId("zone-import");
 importButton.hidden = !records.page.canCurate;
@@ -164,8 +218,7 @@ const sets = mountSetsPanel({
   askFile: () => importButton.click(),
   canCurate: records.page.canCurate,
   showZones(set) {
-    zoneSet = set;
-    showSet();
+    filters.chooseSet(set);
     turnTo("zones");
     records.load();
   },

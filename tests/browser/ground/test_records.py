@@ -104,6 +104,26 @@ def test_a_phone_has_the_list_instead_of_the_table(visitor: Visitor) -> None:
     expect(page.locator(".register")).to_be_hidden()
 
 
+def test_zones_are_a_register_too(visitor: Visitor, picture: Picture) -> None:
+    page = opens(visitor, "/zones")
+    counts = asks(page, "/zones/summary")
+    count = page.locator(".register-count")
+    expect(count).to_have_text(f"{counts['total']:,} found")
+    page.get_by_label("Restriction", exact=True).select_option(counts["restrictions"][0]["value"])
+    expect(count).to_have_text(f"{counts['restrictions'][0]['count']:,} found")
+    page.get_by_label("Applies", exact=True).select_option("now")
+    expect(page.get_by_role("row").nth(1)).to_contain_text(re.compile("always|now, until"))
+    pictures(page, picture, "zones-register")
+    page.get_by_role("button", name="Clear the filters").click()
+    expect(count).to_have_text(f"{counts['total']:,} found")
+    page.get_by_role("columnheader", name="Upper limit").get_by_role("button").click()
+    expect(page.get_by_role("columnheader", name="Upper limit")).to_have_attribute("aria-sort", "ascending")
+    with page.expect_download() as loaded:
+        page.get_by_role("button", name="Export").click()
+        page.get_by_role("button", name="CSV").click()
+    assert loaded.value.suggested_filename == "zones.csv"
+
+
 def a_user_writes(page: Page, asset: str, **facts: object) -> None:
     """Another change of the asset, past this page."""
     change = """async ([path, facts]) => {

@@ -1,0 +1,35 @@
+"""Answers that are files of assets or zones."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from django.http import FileResponse, HttpResponseBase, StreamingHttpResponse
+from django.utils import timezone
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiParameter
+
+from inspection.exporters.geopackage import write_geopackage
+from inspection.exporters.rows import Columns, ExportRow
+from inspection.exporters.text_files import csv_pieces, geojson_pieces
+
+MAX_EXPORTED = 200_000  # as many as a file may bring in
+MEDIA_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json", "gpkg": "application/geopackage+sqlite3"}
+FORMAT = OpenApiParameter("ending", str, OpenApiParameter.PATH, enum=[*MEDIA_TYPES], description="how the file ends")
+FILES: dict[Any, Any] = {(200, kind.partition(";")[0]): OpenApiTypes.BINARY for kind in MEDIA_TYPES.values()}
+
+
+def file_response(rows: Iterator[ExportRow], columns: Columns, ending: str, stem: str) -> HttpResponseBase:
+    response: HttpResponseBase
+    if ending == "gpkg":
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / f"{stem}.gpkg"
+            write_geopackage(path, rows, columns, timezone.now())
+            response = FileResponse(path.open("rb"), content_type=MEDIA_TYPES[ending])  # an open file outlives its name
+    else:
+        pieces = csv_pieces if ending == "csv" else geojson_pieces
+        response = StreamingHttpResponse(pieces(rows, columns), content_type=MEDIA_TYPES[ending])
+    response["Content-Disposition"] = f'attachment; filename="{stem}.{ending}"'
+    response["Cache-Control"] = "private, no-cache"
+    return response

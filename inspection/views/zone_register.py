@@ -1,0 +1,85 @@
+"""The register of zones: counts and files."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import shapely
+from django.http import HttpResponseBase
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.exporters.rows import Columns, ExportRow
+from inspection.models import ZoneSet
+from inspection.selectors.register.zones import ZoneFilter, zone_counts, zones_that_match
+from inspection.serializers.register import ZoneCountsSerializer
+from inspection.serializers.zones import zone_feature
+from inspection.views.export_files import FILES, FORMAT, MAX_EXPORTED, file_response
+from inspection.views.register_filters import ZONE_FILTERS, zone_filter
+from workspace.api.errors import ApiProblem
+from workspace.api.renderers import OneAnswer
+
+COLUMNS: Columns = {
+    "name": "TEXT", "identifier": "TEXT", "layer": "INTEGER", "zone_set": "TEXT", "restriction": "TEXT", "reason": "TEXT",
+    "lower_limit_m": "REAL", "lower_reference": "TEXT", "upper_limit_m": "REAL", "upper_reference": "TEXT", "schedule": "TEXT",
+    "is_active": "BOOLEAN",
+}  # fmt: skip
+BATCH = 500
+
+
+class ZoneCountsView(APIView):
+    @extend_schema(
+        operation_id="count_zones",
+        summary="How many zones match filters, by restriction, reason and set",
+        parameters=ZONE_FILTERS,
+        responses=ZoneCountsSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        counts = zone_counts(zone_filter(request))
+        names = dict(ZoneSet.objects.values_list("pk", "name"))
+        sets = sorted(((key, names.get(key, "") if key else "", count) for key, count in counts.zone_sets.items()), key=lambda row: row[1])
+        return Response(
+            {
+                "total": counts.total,
+                "restrictions": _sorted(counts.restrictions),
+                "reasons": _sorted(counts.reasons),
+                "zone_sets": [{"zone_set": key, "name": name, "count": count} for key, name, count in sets],
+            }
+        )
+
+
+def _sorted(counts: dict[str, int]) -> list[dict[str, Any]]:
+    return [{"value": value, "count": count} for value, count in sorted(counts.items(), key=lambda entry: (-entry[1], entry[0]))]
+
+
+class ZoneFile(APIView):
+    content_negotiation_class = OneAnswer
+    throttle_scope = "exports"
+
+    @extend_schema(
+        operation_id="export_zones",
+        summary="Zones that match filters, as CSV, GeoJSON or GeoPackage",
+        description="CSV has a position, the others the geometry. Limits are in metres; empty ones are not stated.",
+        parameters=[FORMAT, *ZONE_FILTERS],
+        responses=FILES | {409: OpenApiResponse(description="Nothing to export.")},
+    )
+    def get(self, request: Request, ending: str) -> HttpResponseBase:
+        wanted = zone_filter(request)
+        if not zones_that_match(wanted).exists():
+            raise ApiProblem(409, "nothing_found", _("No zone matches: there is nothing to export."))
+        return file_response(_rows(wanted), COLUMNS, ending, "zones")
+
+
+def _rows(wanted: ZoneFilter) -> Iterator[ExportRow]:
+    for zone in zones_that_match(wanted).order_by("pk")[:MAX_EXPORTED].iterator(BATCH):
+        values = zone_feature(zone)["properties"]
+        limits = {
+            f"{side}_{name}": (values[f"{side}_limit"] or {}).get(key)
+            for side in ("lower", "upper")
+            for name, key in (("limit_m", "value_m"), ("reference", "reference"))
+        }
+        stated = {name: values[name] for name in COLUMNS if name in values} | limits | {"schedule": values["schedule_words"]}
+        middle = shapely.from_geojson(zone.geometry_json).representative_point()
+        yield ExportRow("zones", zone.pk, zone.geometry_json, middle.x, middle.y, stated)
