@@ -1,9 +1,10 @@
-/** What a search may go to that is no asset: coordinates, no-fly zones, bases and UAVs by name. */
+/** What a search may go to that is no asset: coordinates, no-fly zones, bases, UAVs and towns by name. */
 
 import { get } from "../api.js";
 import { t } from "../text.js";
 import { coordinateText } from "../units.js";
 import { positionIn } from "./coordinates_read.js";
+import { townsFound } from "./place_names.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { BasePage, ZoneCollection } from "../api_types.d.ts" */
@@ -14,6 +15,7 @@ import { positionIn } from "./coordinates_read.js";
 const COORDINATES_ZOOM = 15;
 const MAX_ZONES = 4;
 const MAX_NAMED = 4;
+const MAX_TOWNS = 3;
 
 /**
  * The place of typed coordinates, as a list of one or none: [{ icon, label, detail, position, zoom }].
@@ -118,8 +120,12 @@ function boxOf(coordinates) {
 export async function placesFound(text, { signal, things = [] } = {}) {
   const coordinates = coordinatesFound(text);
   if (coordinates.length || !text.trim()) return coordinates;
-  const [bases, zones] = await Promise.all([basesKnown(), zonesFound(text.trim(), signal)]);
-  return [...namedFound(text, things), ...namedFound(text, bases), ...zones];
+  const [bases, zones, towns] = await Promise.all([
+    basesKnown(),
+    zonesFound(text.trim(), signal),
+    townsFound(text, MAX_TOWNS),
+  ]);
+  return [...namedFound(text, things), ...namedFound(text, bases), ...zones, ...towns];
 }
 
 /**

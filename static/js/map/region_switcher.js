@@ -1,7 +1,7 @@
-/** The choice of the region in the bar; curators rename regions and remove the demo there. */
+/** The choice of the region in the bar, and the search for a town; curators rename regions and remove the demo there. */
 
 import { ApiError, patch, post } from "../api.js";
-import { byId, find, h, icon } from "../dom.js";
+import { byId, find, h, icon, setChildren } from "../dom.js";
 import { regionAt } from "../domain/regions.js";
 import { closeMenu, toggleMenu } from "../page/chrome.js";
 import { confirmAct } from "../page/confirm.js";
@@ -9,9 +9,12 @@ import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { countsText } from "./look/region_words.js";
 import { boxAround } from "./map_view.js";
+import { townsFound } from "./place_names.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { Box, MapLibreMap, MapPage, Position, Region } from "./types.d.ts" */
+/** @import { Box, FoundPlace, MapLibreMap, MapPage, Position, Region } from "./types.d.ts" */
+
+const MAX_TOWNS = 6;
 
 /**
  * @param {MapLibreMap} map
@@ -21,11 +24,11 @@ import { boxAround } from "./map_view.js";
 export function mountRegionSwitcher(map, page, show) {
   const regions = page.regions ?? [];
   const button = document.getElementById("open-regions");
-  if (!button || !regions.length) return;
+  if (!button) return;
   const here = () => regionAt(regions, /** @type {Position} */ (map.getCenter().toArray()));
   function label() {
     const region = here();
-    const words = region?.name ?? t("All regions");
+    const words = region?.name ?? (regions.length ? t("All regions") : t("Find a town"));
     const shown = find(byId("open-regions"), "span");
     shown.textContent = words;
     shown.translate = !region; // a name stays as it is
@@ -79,6 +82,7 @@ function menu(regions, here, canCurate, show) {
       ),
     ),
     regions.length > 1 && entry("maximize-2", t("All regions"), go(around(regions))),
+    townSearch(show),
     acts.length > 0 && h("hr", {}),
     acts,
   );
@@ -94,6 +98,46 @@ const around = (regions) =>
       ]),
     )
   );
+
+/** A field that finds towns by name, without a service. @param {(box: Box) => void} show */
+function townSearch(show) {
+  const results = h("div", { role: "status" });
+  const input = h("input", {
+    class: "input",
+    type: "search",
+    maxlength: 100,
+    autocomplete: "off",
+    placeholder: t("Find a town"),
+    "aria-label": t("Find a town"),
+  });
+  let asked = 0;
+  input.addEventListener("input", async () => {
+    asked += 1;
+    const turn = asked;
+    const text = input.value.trim();
+    const towns = await townsFound(text, MAX_TOWNS);
+    if (turn !== asked) return;
+    const go =
+      (/** @type {FoundPlace} */ { box }) =>
+      () => {
+        closeMenu();
+        if (box) show(box);
+      };
+    setChildren(
+      results,
+      towns.map((place) =>
+        h(
+          "button",
+          { type: "button", onclick: go(place) },
+          icon("map-pin"),
+          h("span", {}, h("strong", {}, place.label), h("span", { class: "caption" }, place.detail)),
+        ),
+      ),
+      !towns.length && text.length > 1 && h("p", { class: "caption" }, t("No town has this name.")),
+    );
+  });
+  return h("div", { class: "town-search" }, input, results);
+}
 
 /** @param {Region} region */
 async function rename({ id, name }) {
