@@ -110,7 +110,7 @@ def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
     lost = watcher.locator(".alert.critical").filter(has_text="not commanded from here")
     lost.get_by_role("button", name="Acknowledge").click()
     pilot.goto("/live")
-    expect(pilot.locator(".alert.known").filter(has_text="Acknowledged by rory")).to_be_visible()
+    expect(pilot.locator(".alert.known").filter(has_text=re.compile("^Critical: Dunlin.*Acknowledged by rory", re.DOTALL))).to_be_visible()
     for page in (pilot, watcher):
         expect(page.locator("#offers")).to_contain_text("A UAV has dropped out. 1 UAV gets another route", timeout=WORKED_OUT_WITHIN_MS)
         expect(page.locator("#offers")).to_contain_text(re.compile(r"Ruff gets another route \+\d"))
