@@ -6,7 +6,7 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 
-from inspection.models import MAX_REMOVED_PERCENT, ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
+from inspection.models import MAX_REMOVED_PERCENT, ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Region, Upload
 from inspection.selectors.imports import DrawnChange
 from inspection.serializers.features import GeometrySerializer
 from inspection.services.imports.uploads import PART_BYTES
@@ -17,6 +17,8 @@ from workspace.api.fields import FiniteFloatField, WhySerializer
 from workspace.jobs.serializers import Declared
 from workspace.models import Job, JobState, User
 from workspace.reason_texts import column_text, reasons_of_column, why_text, with_message
+
+MAX_REGION_NAME = 200
 
 
 class UploadInputSerializer(serializers.Serializer):
@@ -41,10 +43,28 @@ class ProvenanceInputSerializer(serializers.Serializer):
     attribution = serializers.CharField(max_length=300, required=False, allow_blank=True)
 
 
+class ParametersField(serializers.DictField):
+    """Parameters of an import. `region` names the region that it joins or makes; without it the place decides."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(required=False, **options)
+
+    def to_internal_value(self, data: Any) -> Any:
+        values = super().to_internal_value(data)
+        name = values.get("region", "")
+        if not isinstance(name, str) or not name.isprintable() or len(name) > MAX_REGION_NAME:
+            raise serializers.ValidationError({"region": [_("The name of a region is a text of at most 200 characters.")]})
+        if Region.objects.filter(name=name.strip(), imports__is_synthetic=True).exists():
+            raise serializers.ValidationError({"region": [_("Real data do not join the demo region. Name another one.")]})
+        return values
+
+
 class ImportInputSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=ImportKind.choices)
     upload = serializers.UUIDField(required=False, help_text="a complete upload; not for what is fetched")
-    parameters = serializers.DictField(required=False, help_text="by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N]")
+    parameters = ParametersField(
+        help_text="by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N]; of all: region (a name)"
+    )
     provenance = ProvenanceInputSerializer(required=False)
     auto_apply = serializers.BooleanField(
         default=False,
@@ -61,7 +81,7 @@ class ImportInputSerializer(serializers.Serializer):
 
 
 class ParametersSerializer(serializers.Serializer):
-    parameters = serializers.DictField(required=False)
+    parameters = ParametersField()
 
 
 class ProposalFaultSerializer(serializers.Serializer):

@@ -11,7 +11,7 @@ from inspection.models import Asset, AssetSet, DataImport, NoFlyZone, Region, Zo
 from inspection.region_hooks import after_deletion
 from inspection.selectors.assets import Box, area_of
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
-from inspection.services.imports.regions import fit_regions, lies_within
+from inspection.services.imports.regions import fit_regions, has_demo_data, lies_within
 from inspection.services.imports.terrain import remove_terrain
 from inspection.services.imports.zone_sets import empty_zone_set
 from workspace.audit import record_change
@@ -105,7 +105,7 @@ def delete_region(*, region: Region, actor: User) -> dict[str, int]:
     with transaction.atomic():
         hold_ground()
         counts = counts_of_region(region)
-        is_demo = _is_demo(region)
+        is_demo = has_demo_data(region)
         for zone_set in _zone_sets_of(region):
             empty_zone_set(zone_set=zone_set, actor=actor)
         for data_import in _terrain_of(region):
@@ -121,10 +121,6 @@ def counts_of_region(region: Region) -> dict[str, int]:
     zones = NoFlyZone.objects.filter(zone_set__in=_zone_sets_of(region)).count()
     counts = counts_of_group(AssetGroup(region=region)) | {"zone": zones, "terrain": len(_terrain_of(region))}
     return {kind: number for kind, number in counts.items() if number}
-
-
-def _is_demo(region: Region) -> bool:
-    return region.imports.filter(is_synthetic=True).exists()
 
 
 def _zone_sets_of(region: Region) -> list[ZoneSet]:

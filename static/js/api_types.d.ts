@@ -2216,7 +2216,7 @@ export interface components {
              * @description a complete upload; not for what is fetched
              */
             upload?: string;
-            /** @description by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N] */
+            /** @description by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N]; of all: region (a name) */
             parameters?: {
                 [key: string]: unknown;
             };

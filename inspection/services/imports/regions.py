@@ -36,6 +36,30 @@ def join_region(data_import: DataImport) -> Region | None:
     return region
 
 
+def put_into_region(data_import: DataImport, name: str) -> None:
+    """Move an import into the region of this name, which is made if there is none. Under hold_ground.
+
+    A region that it leaves without any import is deleted. Real data never join the demo region.
+    """
+    before, extent = data_import.region, extent_of_import(data_import)
+    if extent is None or (before is not None and before.name == name):
+        return
+    region, _is_new = Region.objects.get_or_create(name=name, defaults={"extent": Polygon.from_bbox(extent)})
+    if has_demo_data(region) and not data_import.is_synthetic:
+        return
+    data_import.region = region
+    data_import.save(update_fields=["region"])
+    region.extent = Polygon.from_bbox(_around(region.extent.extent, extent))
+    region.save(update_fields=["extent"])
+    if before is not None and not before.imports.exists():
+        before.delete()
+    fit_regions([region.pk, *([before.pk] if before is not None and before.pk is not None else [])])
+
+
+def has_demo_data(region: Region) -> bool:
+    return region.imports.filter(is_synthetic=True).exists()
+
+
 def fit_regions(keys: Iterable[int]) -> None:
     """Set the extents of these regions to those of their assets. One without assets keeps its extent. Under hold_ground."""
     for region in Region.objects.filter(pk__in=list(keys)):

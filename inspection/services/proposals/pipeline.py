@@ -29,6 +29,7 @@ from inspection.models import (
 from inspection.selectors import ground_revision
 from inspection.services.ground import hold_ground
 from inspection.services.imports.overpass import fetch_area
+from inspection.services.imports.regions import put_into_region
 from inspection.services.imports.uploads import UploadRefused, upload_as_file
 from inspection.services.proposals import assets, osm, terrain, zones
 from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading, reasons_against
@@ -43,7 +44,7 @@ APPLY_TASK = "inspection.tasks.apply_proposal"
 MAX_CHANGES_KEPT = 2_000  # of each action; users review a sample, and the totals cover all
 MAX_FAULTS_KEPT = 50
 READ = Reason("file_read")
-DECISIONS = {"replace_edited", "seen", "excluded"}  # parameters of the applying user that do not affect the difference
+DECISIONS = {"replace_edited", "seen", "excluded", "region"}  # parameters of the applying user that do not affect the difference
 _BATCH = 500
 
 
@@ -290,9 +291,16 @@ def _apply(proposal: ImportProposal, job: Job, revision: int | None, progress: P
         data_import: DataImport = _module(proposal).apply(
             path=path, parameters=proposal.parameters, provenance=provenance, applied_by=proposal.decided_by, progress=progress
         )
+        _choose_region(proposal, data_import)
         if not finish_job(job=job, result={"data_import": data_import.pk}, message=Reason("file_applied")):
             raise LostJob
         ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.APPLIED, data_import=data_import)
+
+
+def _choose_region(proposal: ImportProposal, data_import: DataImport) -> None:
+    """Move the import to the region that its user named; without one it stays where it belongs by its place."""
+    if name := str(proposal.parameters.get("region") or "").strip():
+        put_into_region(data_import, name)
 
 
 class _TakenBack(Exception):
@@ -312,6 +320,7 @@ def _apply_by_itself(proposal: ImportProposal, job: Job, progress: Progress, pat
             data_import: DataImport = _module(proposal).apply(
                 path=path, parameters=proposal.parameters, provenance=provenance, applied_by=proposal.decided_by, progress=progress
             )
+            _choose_region(proposal, data_import)
             counts = data_import.counts  # of this run
             reasons = reasons_against(counts, counts, proposal.max_removed_percent)
             if any(counts[action] for action in ("new", "changed", "vanished")):

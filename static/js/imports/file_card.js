@@ -1,10 +1,12 @@
 /** One chosen file: its kind, source and upload progress. */
 
 import { h, icon, setChildren } from "../dom.js";
+import { readPage } from "../page/chrome.js";
 import { t } from "../text.js";
 import { percentText } from "../units.js";
 import { KINDS, sizeText, VERTICAL_DATUMS } from "./words.js";
 
+/** @import { GroundPage } from "../ground/types.d.ts" */
 /** @import { ImportKind, UploadActs, UploadItem } from "./types.d.ts" */
 
 /** Fields of each kind: name, words, hint. @type {Record<ImportKind, [string, string, string][]>} */
@@ -117,7 +119,23 @@ class FileCard {
       h("div", { class: "stack" }, source),
     );
     const osm = h("p", { class: "caption" }, t("© OpenStreetMap contributors, ODbL."));
-    setChildren(this.#fields, own, kind === "osm" ? osm : provenance);
+    setChildren(this.#fields, own, this.#region(), kind === "osm" ? osm : provenance);
+  }
+
+  /** The region that the file joins or makes. The demo takes no real data. */
+  #region() {
+    /** @type {GroundPage} */
+    const { regions = [] } = readPage();
+    const box = this.#input("parameters", "region", t("Blank: by its place"));
+    box.maxLength = 200;
+    box.setAttribute("list", `${this.#id}-regions`);
+    const own = regions.filter((region) => !region.is_synthetic);
+    const choices = h(
+      "datalist",
+      { id: `${this.#id}-regions` },
+      own.map(({ name }) => h("option", { value: name })),
+    );
+    return this.#field("region", t("Region"), h("div", {}, box, choices));
   }
 
   /** @param {"parameters" | "provenance"} group @param {string} name @param {string} hint */
