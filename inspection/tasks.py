@@ -12,6 +12,7 @@ from inspection.services.imports import subscriptions
 from inspection.services.imports.uploads import forget_old_uploads as forget_uploads
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
+from inspection.services.regions import delete_region_of
 from operation.reasons import Reason
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.jobs.job_watch import JobWatch
@@ -46,6 +47,12 @@ def read_proposal(job_id: str) -> None:
 def apply_proposal(job_id: str) -> None:
     """Update the map data to a file, completely or not at all."""
     _work(job_id, pipeline.apply_proposal)
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def delete_region(job_id: str) -> None:
+    """Delete a region, completely or not at all."""
+    _work(job_id, delete_region_of)
 
 
 @shared_task(time_limit=60, soft_time_limit=50)

@@ -14,8 +14,13 @@ from inspection.services.ground import hold_ground, mark_ground_changed, number_
 from inspection.services.imports.regions import fit_regions, has_demo_data, lies_within
 from inspection.services.imports.terrain import remove_terrain
 from inspection.services.imports.zone_sets import empty_zone_set
+from inspection.services.proposals.reading import Progress
+from operation.reasons import Reason
 from workspace.audit import record_change
-from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
+from workspace.jobs.services import JobCancelled, create_job, finish_job
+from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
+
+DELETE_TASK = "inspection.tasks.delete_region"
 
 
 @dataclass(frozen=True)
@@ -97,23 +102,51 @@ def rename_region(*, region: Region, name: str, actor: User) -> None:
         )  # fmt: skip
 
 
-def delete_region(*, region: Region, actor: User) -> dict[str, int]:
+def delete_region(*, region: Region, actor: User, progress: Progress | None = None) -> dict[str, int]:
     """Delete assets, zones and terrain of a region, and the demo's UAVs if it is the demo and the actor plans. Returns their numbers.
 
     Zone sets and terrain that reach beyond the region serve others too, and stay.
     """
+
+    def notify(code: str, share: float) -> None:
+        if progress is not None:
+            progress(Reason(code), share)
+
     with transaction.atomic():
         hold_ground()
         counts = counts_of_region(region)
         is_demo = has_demo_data(region)
+        notify("deleting_zones", 0.0)
         for zone_set in _zone_sets_of(region):
             empty_zone_set(zone_set=zone_set, actor=actor)
+        notify("deleting_terrain", 0.2)
         for data_import in _terrain_of(region):
             remove_terrain(data_import=data_import, actor=actor)
+        notify("deleting_assets", 0.4)
         delete_assets(group=AssetGroup(region=region), actor=actor)
+        notify("deleting_rest", 0.9)
         if is_demo and actor.can_plan:
             after_deletion(actor)
     return counts
+
+
+def ask_to_delete_region(*, region: Region, actor: User) -> Job:
+    """Create the job that deletes a region; the caller sends it to its queue after the commit."""
+    return create_job(
+        organisation=actor.organisation, created_by=actor, task=DELETE_TASK, parameters={"region": region.pk},
+        message=Reason("waiting_to_be_deleted"),
+    )  # fmt: skip
+
+
+def delete_region_of(*, job: Job, progress: Progress) -> None:
+    """Delete the region of a job, completely or not at all: one that was interrupted begins again."""
+    with transaction.atomic():
+        region = Region.objects.filter(pk=job.parameters["region"]).first()
+        actor, counts = job.created_by, {}
+        if region is not None and actor is not None:
+            counts = delete_region(region=region, actor=actor, progress=progress)
+        if not finish_job(job=job, result={"counts": counts}, message=Reason("region_deleted")):
+            raise JobCancelled
 
 
 def counts_of_region(region: Region) -> dict[str, int]:

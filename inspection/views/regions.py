@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.db import transaction
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
@@ -13,6 +14,7 @@ from inspection.selectors.ground import regions_in_use
 from inspection.services.regions import (
     AssetGroup,
     NameTaken,
+    ask_to_delete_region,
     counts_of_group,
     counts_of_region,
     delete_assets,
@@ -25,6 +27,7 @@ from workspace.api.errors import ApiProblem
 from workspace.api.permissions import CURATORS
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import MAX_NUMBER
+from workspace.tasks import send_job_on_commit
 
 
 class RegionInputSerializer(serializers.Serializer):
@@ -46,6 +49,7 @@ class RegionInputSerializer(serializers.Serializer):
         help_text="a region: its zones and terrain too, unless they reach beyond it, and UAVs of the demo",
     )
     dry_run = serializers.BooleanField(default=False, help_text="only count")
+    as_job = serializers.BooleanField(default=False, help_text="of a region: answer at once with the job that deletes it")
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
         if sum(name in values for name in ("bbox", "import_id", "set", "region_id")) != 1:
@@ -55,6 +59,12 @@ class RegionInputSerializer(serializers.Serializer):
             if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south < north <= 90):
                 raise serializers.ValidationError({"bbox": [_("West, south, east, north in degrees, south below north.")]})
         return values
+
+
+class RegionJobSerializer(serializers.Serializer):
+    """The job that deletes a region; its result has `counts`."""
+
+    job = serializers.UUIDField()
 
 
 class RegionCountsSerializer(serializers.Serializer):
@@ -122,11 +132,13 @@ class RegionDelete(APIView):
         description="Assets that were drawn or edited by hand stay, missions keep their references, and the next file restores the others. "
         "Of a region the zones and terrain are deleted too, unless they reach beyond it; of the demo also its UAVs, if the user plans.",
         request=RegionInputSerializer,
-        responses=RegionCountsSerializer,
+        responses={200: RegionCountsSerializer, 202: RegionJobSerializer},
     )
     def post(self, request: SignedInRequest) -> Response:
         body = RegionInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
+        if body.validated_data["as_job"] and not body.validated_data["dry_run"]:
+            return self._as_job(body.validated_data, request)
         if "region_id" in body.validated_data:
             return Response({"counts": self._whole(body.validated_data, request)})
         group = self._group(body.validated_data)
@@ -136,6 +148,14 @@ class RegionDelete(APIView):
     def _whole(self, values: dict[str, Any], request: SignedInRequest) -> dict[str, int]:
         region = region_of(values["region_id"])
         return counts_of_region(region) if values["dry_run"] else delete_region(region=region, actor=request.user)
+
+    def _as_job(self, values: dict[str, Any], request: SignedInRequest) -> Response:
+        if "region_id" not in values:
+            raise invalid("as_job", _("Only a region is deleted by a job."))
+        with transaction.atomic():
+            job = ask_to_delete_region(region=region_of(values["region_id"]), actor=request.user)
+            send_job_on_commit(job)
+        return Response({"job": str(job.pk)}, status=202)
 
     def _group(self, values: dict[str, Any]) -> AssetGroup:
         if "bbox" in values:

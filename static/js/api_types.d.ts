@@ -5029,6 +5029,16 @@ export interface components {
              * @default false
              */
             dry_run: boolean;
+            /**
+             * @description of a region: answer at once with the job that deletes it
+             * @default false
+             */
+            as_job: boolean;
+        };
+        /** @description The job that deletes a region; its result has `counts`. */
+        RegionJob: {
+            /** Format: uuid */
+            job: string;
         };
         RegionList: {
             results: components["schemas"]["Region"][];
@@ -8512,6 +8522,7 @@ export type RefusedReason = components['schemas']['RefusedReason'];
 export type Region = components['schemas']['Region'];
 export type RegionCounts = components['schemas']['RegionCounts'];
 export type RegionInputRequest = components['schemas']['RegionInputRequest'];
+export type RegionJob = components['schemas']['RegionJob'];
 export type RegionList = components['schemas']['RegionList'];
 export type Rehearsal = components['schemas']['Rehearsal'];
 export type RehearsalConditions = components['schemas']['RehearsalConditions'];

@@ -1,12 +1,13 @@
 /** The choice of the region in the bar, and the search for a town; curators rename regions and remove the demo there. */
 
-import { ApiError, patch, post } from "../api.js";
+import { ApiError, follow, patch, post } from "../api.js";
 import { byId, find, h, icon, setChildren } from "../dom.js";
 import { regionAt } from "../domain/regions.js";
 import { closeMenu, toggleMenu } from "../page/chrome.js";
 import { confirmAct } from "../page/confirm.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
+import { percentText } from "../units.js";
 import { countsText } from "./look/region_words.js";
 import { boxAround } from "./map_view.js";
 import { townsFound } from "./place_names.js";
@@ -167,8 +168,16 @@ async function removeDemo({ id, name }) {
       act: t("Remove the demo data"),
     });
     if (!answer) return false;
-    await post("/regions/delete", body);
-    return true;
+    const { data: started } = /** @type {Answer<{ job: string }>} */ (
+      await post("/regions/delete", { ...body, as_job: true })
+    );
+    const shown = find(byId("open-regions"), "span");
+    const job = await follow(started.job, {
+      onProgress: ({ message, progress }) => {
+        shown.textContent = `${message}, ${percentText(progress * 100)}`;
+      },
+    });
+    return job.state === "done";
   });
 }
 

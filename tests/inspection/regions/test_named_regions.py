@@ -16,12 +16,16 @@ from inspection.services import import_osm
 from inspection.services.ground import mark_ground_changed
 from inspection.services.imports.asset_undo import undo_of, write_undo
 from inspection.services.imports.regions import join_region, name_of_file
+from inspection.services.regions import delete_region_of
+from inspection.tasks import delete_region as delete_region_task
 from missions.models import Base, Uav, UavType
 from missions.services.fleet.demo_uavs import create_demo_uavs
+from operation.reasons import Reason
 from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import square, tower, zone
 from tests.inspection.imports.osm_files import TOWER, small_line, write_osm
-from workspace.models import AuditEntry, Role
+from workspace.jobs.services import JobLost
+from workspace.models import AuditEntry, Job, Role
 
 pytestmark = pytest.mark.django_db
 
@@ -286,3 +290,37 @@ def test_a_region_is_as_large_as_before_once_an_import_into_it_is_undone(tmp_pat
     with transaction.atomic():
         write_undo(undo_of(second), actor=None)
     assert Region.objects.get().extent.extent == before
+
+
+def test_a_region_is_deleted_by_a_job_that_tells_its_progress_and_begins_again_after_a_lost_worker() -> None:
+    user = a_user(Role.CURATOR)
+    client = client_of(user)
+    an_import("ohio.osm.pbf", OHIO)
+    region = the_demo()
+    body = {"region_id": region.pk, "as_job": True}
+    answer = client.post("/api/v1/regions/delete", body, content_type="application/json")
+    assert answer.status_code == 202
+    assert len(regions_in_use()) == 2
+    job = Job.objects.get(pk=answer.json()["job"])
+    told: list[tuple[str, float]] = []
+
+    def lost(reason: Reason, share: float) -> None:
+        told.append((reason.code, share))
+        if reason.code == "deleting_rest":
+            raise JobLost
+
+    with pytest.raises(JobLost):
+        delete_region_of(job=job, progress=lost)
+    assert [code for code, _share in told] == ["deleting_zones", "deleting_terrain", "deleting_assets", "deleting_rest"]
+    assert [share for _code, share in told] == sorted(share for _code, share in told)
+    assert len(regions_in_use()) == 2
+    delete_region_task(str(job.pk))
+    done = client.get(f"/api/v1/jobs/{job.pk}").json()
+    assert (done["state"], done["result"]) == ("done", {"counts": {"tower": 2, "zone": 1, "terrain": 1}})
+    assert [row.name for row in regions_in_use()] == ["Ohio"]
+    delete_region_task(str(job.pk))
+
+
+@pytest.mark.parametrize("body", [{"set": "x", "as_job": True}, {"bbox": [0, 0, 1, 1], "as_job": True}])
+def test_only_a_region_is_deleted_by_a_job(body: dict[str, Any]) -> None:
+    assert client_of(a_user(Role.CURATOR)).post("/api/v1/regions/delete", body, content_type="application/json").status_code == 400
