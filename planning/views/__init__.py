@@ -1,0 +1,1 @@
+"""Camera views of infrastructure: poses, coverage and clearance."""

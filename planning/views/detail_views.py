@@ -1,0 +1,181 @@
+"""Photos of every part of an asset at an asked ground sample distance, from outside the clearance."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from planning.views.camera import Camera, Lens, standoff_m
+from planning.views.cover import fewest_photos
+from planning.views.keep_out import KeepOut
+from planning.views.limits import DetailRules, Limits, limits_of
+from planning.views.solids import Component, FloatArray, Patches, Solid, patches_of
+from planning.views.visibility import Poses, RayCaster, aim_at, in_frame, line_of_sight
+
+BoolArray = NDArray[np.bool_]
+
+AZIMUTH_STEP_DEG = 15.0
+MIN_PATCH_M, MAX_PATCH_M, PATCHES_HIGH = 1.0, 2.5, 16  # sides of patches, by the height of the asset
+BEYOND_M = 0.5  # of the keep-out, for candidate positions
+ABOVE_M = (0.5, 6.0)  # the top of the keep-out
+DISTANCE_SHARES = (0.0, 0.35, 0.75)  # of the way from the keep-out to the farthest place
+LEAST_COSINE = 0.2  # of a pitch, by which steps of yaw are widened
+CUBE_M = 1.5  # side of a cube with one place of those that are looked for by patch
+MUCH = 0.2  # of what the photo shows that shows the most
+REACH_M = 80.0  # from the asset's axis, of candidate positions
+LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
+ENOUGH = 0.99  # of what the longest focal length reaches, for a shorter one to do
+
+
+@dataclass(frozen=True, eq=False)
+class DetailViews:
+    """Poses of photos, the lens they are taken with, what they show (photos, patches), and why other patches cannot be shown.
+
+    bound: no choice among the candidates shows enough with fewer photos.
+    """
+
+    poses: Poses
+    lens: Lens
+    patches: Patches
+    shows: BoolArray
+    limits: Limits
+    bound: int
+    candidates: int = field(default=0)
+
+
+def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailRules) -> DetailViews:
+    """Return the fewest photos found that show the solid, which stands at the origin of its frame."""
+    height_m = float(solid.box[1][2])
+    patches = patches_of(solid, float(np.clip(height_m / PATCHES_HIGH, MIN_PATCH_M, MAX_PATCH_M)))
+    caster = RayCaster([solid])
+    farthest_m = min(standoff_m(camera, rules.asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
+    limits = limits_of(patches, keep_out, caster, camera, rules, farthest_m)
+    positions = candidate_positions(solid, keep_out, rules, farthest_m)
+    sight = line_of_sight(positions, patches, caster, farthest_m)
+    more = _further_positions(limits, np.asarray(~sight.any(axis=0)))
+    positions = np.concatenate([positions, more])
+    sight = np.concatenate([sight, line_of_sight(more, patches, caster, farthest_m)]) & _pitch_reached(positions, patches, camera)
+    lens = _lens(camera, rules, positions, patches, sight)
+    photos, shows = _photos(positions, patches, sight, camera, lens)
+    if not len(photos):
+        return DetailViews(photos, lens, patches, shows, limits, 0)
+    kind = np.array([list(Component).index(kind) for kind, _ in solid.components])[patches.component]
+    cover = fewest_photos(shows, patches.area_m2, kind, rules.share)
+    return DetailViews(photos.only(cover.chosen), lens, patches, shows[cover.chosen], limits, cover.bound, len(photos))
+
+
+def candidate_positions(solid: Solid, keep_out: KeepOut, rules: DetailRules, farthest_m: float) -> FloatArray:
+    """Places around the asset and above it, outside the keep-out and within the heights; (n, 3) [m]."""
+    _, high = solid.box
+    top_m = float(keep_out.top_m.max(initial=float(high[2])))
+    highest_m = min(float(high[2]) + min(0.7 * farthest_m, MAX_ABOVE_M), rules.max_height_m)
+    count = max(math.ceil((highest_m - rules.min_height_m) / max(MIN_LEVELS_M, highest_m / LEVELS)), 1)
+    levels_m = np.linspace(rules.min_height_m, max(highest_m, rules.min_height_m), count + 1)
+    found = []
+    for azimuth in np.arange(0.0, 360.0, AZIMUTH_STEP_DEG):
+        direction = np.array([math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
+        for level_m in levels_m.tolist():
+            near_m = _first_outside_m(direction, level_m, keep_out)
+            if near_m is None or near_m > farthest_m + float(np.abs(high[:2]).max()):
+                continue
+            shares = DISTANCE_SHARES if farthest_m > near_m else DISTANCE_SHARES[:1]
+            found += [(*(direction * (near_m + share * (farthest_m - near_m))), level_m) for share in shares]
+    for above_m in ABOVE_M:
+        level_m = top_m + above_m
+        if level_m > rules.max_height_m:
+            continue
+        for out_m in (0.0, 6.0, 12.0, 20.0):
+            count = 1 if out_m == 0.0 else 12
+            for turn in np.radians(np.arange(count) * 360.0 / count).tolist():
+                found.append((out_m * math.sin(turn), out_m * math.cos(turn), level_m))
+    positions = np.array(found).reshape(-1, 3)
+    return positions[~keep_out.holds(positions)] if len(positions) else positions
+
+
+def _further_positions(limits: Limits, missing: BoolArray) -> FloatArray:
+    """Places from where patches can be photographed that no candidate sees, one in each cube."""
+    places = limits.place[missing[limits.patch]]
+    _, first = np.unique(np.floor(places / CUBE_M), axis=0, return_index=True)
+    return places[first]
+
+
+def _first_outside_m(direction: FloatArray, level_m: float, keep_out: KeepOut) -> float | None:
+    """How far out from the axis, in a direction, the last column of the keep-out ends at a level; None where none ends near enough."""
+    out_m = np.arange(0.0, REACH_M, 0.5)
+    points = np.column_stack([out_m[:, None] * direction, np.full(len(out_m), level_m)])
+    inside = np.flatnonzero(keep_out.holds(points))
+    if not len(inside):
+        return BEYOND_M
+    last = int(inside[-1])
+    return None if last == len(out_m) - 1 else float(out_m[last]) + 0.5 + BEYOND_M
+
+
+def _pitch_reached(positions: FloatArray, patches: Patches, camera: Camera) -> BoolArray:
+    """Whether the gimbal looks at each patch from each position, (positions, patches), give or take a third of the picture's height."""
+    reached = np.zeros((len(positions), len(patches)), dtype=bool)
+    spare_deg = math.degrees(math.atan(camera.sensor_height_mm / (6.0 * camera.focal_lengths_mm[0])))
+    for number, position in enumerate(positions):
+        _, pitch = aim_at(position, patches.centre)
+        gimbal = camera.gimbal
+        reached[number] = (pitch >= gimbal.pitch_min_deg - spare_deg) & (pitch <= gimbal.pitch_max_deg + spare_deg)
+    return reached
+
+
+def _lens(camera: Camera, rules: DetailRules, positions: FloatArray, patches: Patches, sight: BoolArray) -> Lens:
+    """The shortest focal length that reaches nearly all that the longest does: its pictures are the widest."""
+    distance_m = np.linalg.norm(positions[:, None, :] - patches.centre, axis=2)
+    nearest_m = camera.nearest_focus_m
+
+    def seen_m2(focal_mm: float) -> float:
+        within = (distance_m <= standoff_m(camera, rules.asked_gsd_m, focal_mm)) & (distance_m >= nearest_m)
+        return float(patches.area_m2[(sight & within).any(axis=0)].sum())
+
+    longest_mm = camera.focal_lengths_mm[-1]
+    most_m2 = seen_m2(longest_mm)
+    focal_mm = next((own for own in camera.focal_lengths_mm if seen_m2(own) >= ENOUGH * most_m2), longest_mm)
+    return Lens(focal_mm, nearest_m, standoff_m(camera, rules.asked_gsd_m, focal_mm))
+
+
+def _photos(positions: FloatArray, patches: Patches, sight: BoolArray, camera: Camera, lens: Lens) -> tuple[Poses, BoolArray]:
+    """Aims from each position at what is seen from there, half a picture apart, and what each photo shows."""
+    step_yaw = math.degrees(math.atan(camera.sensor_width_mm / (2.0 * lens.focal_mm)))
+    step_pitch = math.degrees(math.atan(camera.sensor_height_mm / (2.0 * lens.focal_mm)))
+    places: list[int] = []
+    yaws: list[FloatArray] = []
+    pitches: list[FloatArray] = []
+    rows: list[BoolArray] = []
+    for number, position in enumerate(positions):
+        seen = np.flatnonzero(sight[number])
+        if not len(seen):
+            continue
+        yaw, pitch = aim_at(position, patches.centre[seen])
+        middle = float(np.degrees(np.arctan2(np.sin(np.radians(yaw)).mean(), np.cos(np.radians(yaw)).mean())))
+        turned = (yaw - middle + 180.0) % 360.0 - 180.0
+        cells = np.unique(np.round(np.column_stack([turned * np.cos(np.radians(pitch)) / step_yaw, pitch / step_pitch])), axis=0)
+        own_pitch = np.clip(cells[:, 1] * step_pitch, camera.gimbal.pitch_min_deg, camera.gimbal.pitch_max_deg)
+        own_yaw = (middle + cells[:, 0] * step_yaw / np.maximum(np.cos(np.radians(own_pitch)), LEAST_COSINE)) % 360.0
+        shown = in_frame(position, own_yaw, own_pitch, patches.centre[seen], camera, lens)
+        some = shown.any(axis=1)
+        whole = np.zeros((int(some.sum()), len(patches)), dtype=bool)
+        whole[:, seen] = shown[some]
+        places += [number] * len(whole)
+        yaws.append(own_yaw[some])
+        pitches.append(own_pitch[some])
+        rows.append(whole)
+    if not places:
+        return Poses(positions[:0], np.zeros(0), np.zeros(0)), np.zeros((0, len(patches)), dtype=bool)
+    shows = np.concatenate(rows)
+    kept = _worthwhile(shows, patches.area_m2)
+    poses = Poses(positions[places], np.concatenate(yaws), np.concatenate(pitches))
+    return poses.only(kept), shows[kept]
+
+
+def _worthwhile(shows: BoolArray, area_m2: FloatArray) -> BoolArray:
+    """Photos that show much, and of each patch the one that shows the most."""
+    shown_m2 = np.asarray(csr_array(shows) @ area_m2)
+    kept: BoolArray = shown_m2 >= MUCH * shown_m2.max()
+    order = np.argsort(-shown_m2, kind="stable")
+    kept[order[shows[order].argmax(axis=0)]] = True
+    return kept

@@ -1,0 +1,102 @@
+"""Which patches of a surface a camera can photograph at all, from where, and why it cannot photograph the others."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from planning.views.camera import Camera
+from planning.views.keep_out import KeepOut
+from planning.views.solids import FloatArray, IntArray, Patches
+from planning.views.visibility import MAX_ANGLE_DEG, OFF_SURFACE_M, RayCaster
+
+RINGS_DEG = (0.0, 15.0, 30.0, 45.0, 58.0)  # from a patch's normal: where it is looked from to learn whether it can be seen
+AROUND = 12  # directions in each ring
+SHARES = (0.1, 0.25, 0.45, 0.65, 0.85, 0.999)  # of the farthest distance
+BESIDE_M = 1.0  # what stands nearer hides a patch
+
+
+class Limit(StrEnum):
+    """Why no photo can show a patch, from the first that bars it."""
+
+    NONE = ""
+    HIDDEN = "hidden"  # by the asset itself
+    HEIGHT = "height"  # only from below the least height above ground, or from above the greatest
+    GIMBAL = "gimbal"  # only with a pitch that the gimbal does not reach
+    DISTANCE = "distance"  # too coarse from outside the keep-out
+
+
+LIMITS = tuple(Limit)
+
+
+@dataclass(frozen=True)
+class DetailRules:
+    """asked_gsd_m: what a pixel may show at most. min_height_m and max_height_m: of the UAV above the ground at the asset.
+
+    share: of the area that can be photographed, in all and for each kind of component.
+    """
+
+    asked_gsd_m: float
+    min_height_m: float = 4.0
+    max_height_m: float = 120.0
+    share: float = 0.97
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """limit (p,): of each patch its place in LIMITS, 0 where it can be photographed. place (k, 3) from where [m], of patch (k,)."""
+
+    limit: IntArray
+    place: FloatArray
+    patch: IntArray
+
+
+def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Camera, rules: DetailRules, farthest_m: float) -> Limits:
+    """Return why each patch cannot be photographed, and places from where it can.
+
+    Looks back from the patch in directions within the greatest angle, at distances up to the farthest.
+    """
+    directions = _directions(patches.normal)
+    found = np.full(len(patches), LIMITS.index(Limit.HIDDEN), dtype=np.int64)
+    start = patches.centre + OFF_SURFACE_M * patches.normal
+    pitch_min, pitch_max = camera.gimbal.pitch_min_deg, camera.gimbal.pitch_max_deg
+    spare_deg = np.degrees(np.arctan(camera.sensor_height_mm / (2.0 * camera.focal_lengths_mm[-1])))
+    best = {Limit.DISTANCE: 1, Limit.GIMBAL: 2, Limit.HEIGHT: 3, Limit.HIDDEN: 4}
+    rank = np.full(len(patches), best[Limit.HIDDEN], dtype=np.int64)
+    places, of_patch = [np.zeros((0, 3))], [np.zeros(0, dtype=np.int64)]
+    for direction in np.moveaxis(directions, 1, 0):
+        open_ = rank > 0
+        free = np.zeros(len(patches), dtype=bool)
+        free[open_] = caster.is_free(start[open_], start[open_] + direction[open_] * BESIDE_M)
+        pitch = -np.degrees(np.arcsin(np.clip(direction[:, 2], -1.0, 1.0)))
+        aimed = (pitch >= pitch_min - spare_deg) & (pitch <= pitch_max + spare_deg)
+        for share in SHARES:
+            place = patches.centre + direction * share * farthest_m
+            tall = (place[:, 2] >= rules.min_height_m) & (place[:, 2] <= rules.max_height_m)
+            here = np.where(~tall, best[Limit.HEIGHT], np.where(~aimed, best[Limit.GIMBAL], best[Limit.DISTANCE]))
+            could = np.flatnonzero(free & tall & aimed & (rank > 0))
+            outside = could[~keep_out.holds(place[could])]
+            rank = np.where(free, np.minimum(rank, here), rank)
+            seeing = outside[caster.is_free(start[outside], place[outside])]
+            rank[seeing] = 0
+            places.append(place[seeing])
+            of_patch.append(seeing)
+    for limit, own in best.items():
+        found[rank == own] = LIMITS.index(limit)
+    found[rank == 0] = 0
+    return Limits(found, np.concatenate(places), np.concatenate(of_patch))
+
+
+def _directions(normal: FloatArray) -> FloatArray:
+    """Unit vectors around each normal, (p, directions, 3)."""
+    aside = np.where(np.abs(normal[:, 2:]) < 0.9, np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
+    first = np.cross(normal, aside)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    second = np.cross(normal, first)
+    rings = [normal]
+    for ring_deg in RINGS_DEG[1:]:
+        assert ring_deg < MAX_ANGLE_DEG  # noqa: S101 - figures of this module
+        for turn in 2.0 * np.pi * np.arange(AROUND) / AROUND:
+            tilt = np.radians(ring_deg)
+            rings.append(np.cos(tilt) * normal + np.sin(tilt) * (np.cos(turn) * first + np.sin(turn) * second))
+    return np.stack(rings, axis=1)

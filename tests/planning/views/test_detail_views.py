@@ -1,0 +1,163 @@
+"""Photos of whole towers: clear of wires, within the camera's limits, of nearly all that can be shown, and proven by other means."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+
+from planning.views.camera import Camera, Gimbal, standoff_m
+from planning.views.coverage import Coverage, by_component, coverage_of
+from planning.views.detail_views import REACH_M, DetailViews, detail_views
+from planning.views.keep_out import SWING_DEG
+from planning.views.limits import LIMITS, DetailRules, Limit, limits_of
+from planning.views.solids import Component, patches_of
+from planning.views.view_flight import NO_PHOTO, NoWay, view_flight
+from planning.views.visibility import MAX_ANGLE_DEG, RayCaster, axes_of
+from tests.planning.views.geometry_oracle import first_hit, flown_places, to_triangles_m, to_wires_m
+from tests.planning.views.towers import FULL_FRAME, TOWERS, WIDE, ZOOM, standing
+
+CASES = [
+    ("lattice, 380 kV, barrel", ZOOM, 0.002),
+    ("lattice, 110 kV, triangle", FULL_FRAME, 0.004),
+    ("guyed, 220 kV, one level", FULL_FRAME, 0.004),
+    ("H-frame, 66 kV, anchor", WIDE, 0.004),
+    ("wooden pole, 20 kV", ZOOM, 0.002),
+]
+MAX_HEIGHT_M = 120.0
+FRAME_PIXELS = (600, 450)  # of rendered pictures
+
+each_case = pytest.mark.parametrize(("tower", "camera", "gsd_m"), CASES, ids=[f"{tower}, {camera.name}" for tower, camera, _ in CASES])
+
+
+@cache
+def planned(tower: str, camera: Camera, gsd_m: float) -> DetailViews:
+    stands = standing(TOWERS[tower])
+    return detail_views(stands.solid, stands.keep_out, camera, DetailRules(gsd_m))
+
+
+@cache
+def proven(tower: str, camera: Camera, gsd_m: float, patch_m: float = 0.8) -> Coverage:
+    stands, views = standing(TOWERS[tower]), planned(tower, camera, gsd_m)
+    patches, caster = patches_of(stands.solid, patch_m), RayCaster([stands.solid])
+    farthest_m = min(standoff_m(camera, gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
+    limits = limits_of(patches, stands.keep_out, caster, camera, DetailRules(gsd_m), farthest_m)
+    return coverage_of(views.poses, views.lens, camera, patches, caster, limits.limit)
+
+
+@each_case
+def test_poses_keep_clear_and_within_what_gimbal_and_heights_allow(tower: str, camera: Camera, gsd_m: float) -> None:
+    stands, poses = standing(TOWERS[tower]), planned(tower, camera, gsd_m).poses
+    assert len(poses)
+    assert not stands.keep_out.holds(poses.position).any()
+    assert poses.pitch_deg.min() >= camera.gimbal.pitch_min_deg
+    assert poses.pitch_deg.max() <= camera.gimbal.pitch_max_deg
+    rules = DetailRules(gsd_m)
+    assert poses.position[:, 2].min() >= rules.min_height_m
+    assert poses.position[:, 2].max() <= rules.max_height_m
+
+
+@each_case
+def test_finer_patches_prove_what_the_plan_promises(tower: str, camera: Camera, gsd_m: float) -> None:
+    coverage, views = proven(tower, camera, gsd_m), planned(tower, camera, gsd_m)
+    assert coverage.share >= 0.95
+    assert coverage.gsd_m[coverage.shown].max() <= gsd_m + 1e-12
+    assert coverage.angle_deg[coverage.shown].max() <= MAX_ANGLE_DEG + 1e-6
+    assert views.bound <= len(views.poses) <= 1.3 * views.bound + 1.0
+    reached = coverage.patches.area_m2[coverage.limit == 0].sum() / coverage.patches.area_m2.sum()
+    assert reached > 0.8, "nearly all of a tower can be photographed with these lenses"
+
+
+@each_case
+def test_the_flight_keeps_the_clearance_from_structures_and_swinging_wires(tower: str, camera: Camera, gsd_m: float) -> None:
+    stands, views = standing(TOWERS[tower]), planned(tower, camera, gsd_m)
+    above = np.array([0.0, 0.0, stands.keep_out.top_m.max() + 2.0])
+    flight = view_flight(views.poses, stands.keep_out, above, MAX_HEIGHT_M, above)
+    assert sorted(flight.photo[flight.photo != NO_PHOTO].tolist()) == list(range(len(views.poses)))
+    np.testing.assert_array_equal(flight.position[flight.photo != NO_PHOTO], views.poses.position[flight.photo[flight.photo != NO_PHOTO]])
+    np.testing.assert_array_equal(flight.position[[0, -1]], [above, above])
+    places = flown_places(flight, 0.3)  # 0.1 s at 3 m/s
+    assert to_triangles_m(places, stands.solid.triangles).min() >= stands.clearance_m - 1e-6
+    wires = (*stands.support.arms.slots, *stands.support.arms.earth)
+    for span in stands.spans:
+        turned = tuple((across * (1.0 if span.end[1] > 0 else -1.0), height) for across, height in wires)
+        assert to_wires_m(places, span, turned, SWING_DEG, 100.0).min() >= stands.clearance_m - 1e-6
+    assert places[:, 2].max() <= MAX_HEIGHT_M
+
+
+def test_a_flight_that_would_lead_above_the_limit_is_refused() -> None:
+    stands, views = standing(TOWERS["lattice, 380 kV, barrel"]), planned(*CASES[0])
+    with pytest.raises(NoWay):
+        view_flight(views.poses, stands.keep_out, views.poses.position[0], 45.0)
+
+
+@pytest.mark.parametrize(("tower", "camera", "gsd_m", "patch_m"), [(*CASES[1], 0.25), (*CASES[4], 0.08)], ids=["lattice", "pole"])
+def test_coverage_equals_that_of_rendered_pictures_in_which_each_face_has_its_number(
+    tower: str, camera: Camera, gsd_m: float, patch_m: float
+) -> None:
+    views, coverage = planned(tower, camera, gsd_m), proven(tower, camera, gsd_m, patch_m)
+    patches = coverage.patches
+    scene = EmbreeScene()
+    mesh = TriangleMesh(scene, patches.corners.astype(np.float32))
+    assert mesh is not None, "kept as long as the scene"
+    drawn = np.zeros(len(patches), dtype=bool)
+    right, up, forward = axes_of(views.poses.yaw_deg, views.poses.pitch_deg)
+    wide, high = FRAME_PIXELS
+    columns = (np.arange(wide) + 0.5) / wide * 2.0 - 1.0
+    lines = (np.arange(high) + 0.5) / high * 2.0 - 1.0
+    across = columns * camera.sensor_width_mm / (2.0 * views.lens.focal_mm)
+    upward = lines * camera.sensor_height_mm / (2.0 * views.lens.focal_mm)
+    for number, position in enumerate(views.poses.position):
+        rays = forward[number] + across[None, :, None] * right[number] + upward[:, None, None] * up[number]
+        rays = rays.reshape(-1, 3)
+        start = np.broadcast_to(position, rays.shape)
+        which = np.asarray(scene.run(start.astype(np.float32), rays.astype(np.float32)))
+        depth_m = np.einsum("ri,i->r", patches.centre[which] - position, forward[number])
+        cosine = -np.einsum("ri,ri->r", rays, patches.normal[which]) / np.linalg.norm(rays, axis=1)
+        fine = (which >= 0) & (depth_m <= views.lens.farthest_m) & (cosine >= np.cos(np.radians(MAX_ANGLE_DEG)))
+        drawn[which[fine]] = True
+    area_m2 = patches.area_m2
+    assert area_m2[drawn].sum() / area_m2.sum() == pytest.approx(area_m2[coverage.shown].sum() / area_m2.sum(), abs=0.02)
+
+
+def test_rays_meet_what_plain_formulas_say_they_meet() -> None:
+    solid = standing(TOWERS["lattice, 110 kV, flag, anchor"]).solid
+    random = np.random.default_rng(4)
+    start = random.uniform((-30.0, -30.0, 0.0), (30.0, 30.0, 40.0), (3_000, 3))
+    end = random.uniform((-8.0, -3.0, 0.0), (8.0, 3.0, 28.0), (3_000, 3))
+    _, distance_m = first_hit(start, end - start, solid.triangles)
+    surely = np.abs(distance_m - 1.0) > 1e-4
+    np.testing.assert_array_equal(RayCaster([solid]).is_free(start, end)[surely], distance_m[surely] > 1.0)
+
+
+def test_what_cannot_be_shown_has_its_reason() -> None:
+    tower, camera, gsd_m = CASES[0]
+    stands = standing(TOWERS[tower])
+    patches, caster = patches_of(stands.solid, 2.0), RayCaster([stands.solid])
+
+    def limits(camera: Camera, rules: DetailRules) -> set[Limit]:
+        farthest_m = standoff_m(camera, rules.asked_gsd_m, camera.focal_lengths_mm[-1])
+        return {LIMITS[own] for own in limits_of(patches, stands.keep_out, caster, camera, rules, farthest_m).limit.tolist()}
+
+    assert limits(WIDE, DetailRules(0.002)) == {Limit.HIDDEN, Limit.DISTANCE, Limit.HEIGHT}, "its lens is too wide for 2 mm from outside"
+    level = Camera("level", 6.4, 4.8, 8000, 6000, (28.4,), gimbal=Gimbal(-5.0, 5.0))
+    assert Limit.GIMBAL in limits(level, DetailRules(0.002))
+    assert Limit.HEIGHT in limits(camera, DetailRules(gsd_m, min_height_m=40.0))
+
+
+def test_a_camera_that_shows_nothing_gets_no_photo_and_no_error() -> None:
+    stands = standing(TOWERS["lattice, 765 kV, delta"])
+    views = detail_views(stands.solid, stands.keep_out, WIDE, DetailRules(0.0005))
+    assert len(views.poses) == 0
+    assert views.bound == 0
+
+
+def test_components_add_up_to_the_whole() -> None:
+    coverage, stands = proven(*CASES[0]), standing(TOWERS[CASES[0][0]])
+    rows = by_component(stands.solid, coverage)
+    assert sum(row.area_m2 for row in rows) == pytest.approx(coverage.patches.area_m2.sum())
+    assert sum(row.area_m2 * row.shown for row in rows) == pytest.approx(coverage.patches.area_m2[coverage.shown].sum())
+    strings = [row for row in rows if row.component is Component.STRING]
+    assert [row.number for row in strings] == list(range(6))
+    assert all(row.shown <= row.reachable and (row.gsd_m or 0.0) <= 0.002 for row in rows)

@@ -1,0 +1,67 @@
+"""Towers, wires and cameras of tests and benchmarks of views."""
+
+from dataclasses import dataclass
+
+from inspection.scene.forms import Form, Layout
+from inspection.scene.supports import DrawnSupport, arms_of
+from planning.views.camera import Camera, Gimbal
+from planning.views.keep_out import ClearanceRules, KeepOut, Span, clearance_m, keep_out
+from planning.views.solids import Solid
+from planning.views.tower_solid import tower_solid
+
+SPAN_M, SAG_M = 300.0, 9.0
+
+ZOOM = Camera("zoom", 6.4, 4.8, 8000, 6000, (7.1, 10.0, 14.0, 20.0, 28.4), 0.7, 5.0, gimbal=Gimbal(-120.0, 45.0))
+FULL_FRAME = Camera("full frame, 35 mm", 35.9, 24.0, 8192, 5460, (35.0,), 0.7, 1.0, gimbal=Gimbal(-130.0, 40.0))
+WIDE = Camera("four thirds, wide", 17.3, 13.0, 5280, 3956, (12.3,), 0.7, 1.0, gimbal=Gimbal(-90.0, 35.0))
+
+
+@dataclass(frozen=True)
+class StandingTower:
+    """A tower in the frame of its line, the wires on both sides, and what is kept from them."""
+
+    support: DrawnSupport
+    solid: Solid
+    spans: tuple[Span, ...]
+    clearance_m: float
+    keep_out: KeepOut
+
+
+def support(
+    form: Form, layout: Layout, height_m: float, voltage_v: int | None, phases: int = 3, *, is_anchor: bool = False
+) -> DrawnSupport:
+    arms = arms_of(form, layout, height_m, voltage_v, phases, is_anchor)
+    return DrawnSupport("tower", form, height_m, "tag", height_m, voltage_v, is_anchor, 0.0, arms)
+
+
+def standing(own: DrawnSupport) -> StandingTower:
+    solid, kept_m = tower_solid(own), clearance_m(own.voltage_v, ClearanceRules())
+    across = [place for place, _ in (*own.arms.slots, *own.arms.earth)]
+    spans = tuple(
+        Span((0.0, 0.0), (0.0, side * SPAN_M), min(across), max(across), own.likely_m, own.likely_m, SAG_M) for side in (1.0, -1.0)
+    )
+    return StandingTower(own, solid, spans, kept_m, keep_out([solid], spans, kept_m))
+
+
+TOWERS = {
+    "lattice, 380 kV, barrel": support(Form.LATTICE, Layout.BARREL, 50.0, 380_000, 6),
+    "lattice, 380 kV, danube": support(Form.LATTICE, Layout.DANUBE, 48.0, 380_000, 6),
+    "lattice, 380 kV, delta": support(Form.LATTICE, Layout.DELTA, 38.0, 380_000),
+    "lattice, 380 kV, one level, anchor": support(Form.LATTICE, Layout.ONE_LEVEL, 33.0, 380_000, is_anchor=True),
+    "lattice, 220 kV, danube, anchor": support(Form.LATTICE, Layout.DANUBE, 42.0, 220_000, 6, is_anchor=True),
+    "lattice, 220 kV, three levels": support(Form.LATTICE, Layout.THREE_LEVEL, 44.0, 220_000, 6),
+    "lattice, 110 kV, two levels": support(Form.LATTICE, Layout.TWO_LEVEL, 30.0, 110_000, 6),
+    "lattice, 110 kV, triangle": support(Form.LATTICE, Layout.TRIANGLE, 26.0, 110_000),
+    "lattice, 110 kV, flag, anchor": support(Form.LATTICE, Layout.FLAG, 28.0, 110_000, is_anchor=True),
+    "lattice, 765 kV, delta": support(Form.LATTICE, Layout.DELTA, 55.0, 765_000),
+    "tubular, 220 kV, alternating": support(Form.TUBULAR, Layout.ALTERNATING, 34.0, 220_000),
+    "tubular, 110 kV, alternating": support(Form.TUBULAR, Layout.ALTERNATING, 28.0, 110_000),
+    "tubular, 110 kV, two levels, anchor": support(Form.TUBULAR, Layout.TWO_LEVEL, 30.0, 110_000, 6, is_anchor=True),
+    "guyed, 400 kV, delta": support(Form.GUYED, Layout.DELTA, 35.0, 400_000),
+    "guyed, 220 kV, one level": support(Form.GUYED, Layout.ONE_LEVEL, 30.0, 220_000),
+    "H-frame, 110 kV": support(Form.H_FRAME, Layout.ONE_LEVEL, 18.0, 110_000),
+    "H-frame, 66 kV, anchor": support(Form.H_FRAME, Layout.ONE_LEVEL, 16.0, 66_000, is_anchor=True),
+    "portal, 110 kV": support(Form.PORTAL, Layout.ONE_LEVEL, 11.0, 110_000),
+    "wooden pole, 20 kV": support(Form.WOODEN, Layout.TRIANGLE, 11.0, 20_000),
+    "wooden pole, 33 kV, one level": support(Form.WOODEN, Layout.ONE_LEVEL, 12.0, 33_000),
+}
