@@ -46,7 +46,10 @@ class DetailViews:
 
 
 def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailRules) -> DetailViews:
-    """Return the fewest photos found that show the solid, which stands at the origin of its frame."""
+    """Return the fewest photos found that show the solid, which stands at the origin of its frame.
+
+    Heights of the rules count from there; over terrain the keep-out has a floor.
+    """
     height_m = float(solid.box[1][2])
     patches = patches_of(solid, float(np.clip(height_m / PATCHES_HIGH, MIN_PATCH_M, MAX_PATCH_M)))
     caster = RayCaster([solid])

@@ -4,8 +4,8 @@ A UAV passes wires above them or along their outer side, and is never under or b
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ VICINITY_M = ((10.0, 1.15), (20.0, 1.22), (30.0, 1.32), (110.0, 2.0), (220.0, 3.
 USUAL_KV = 110.0  # where nothing is known of a line, its next class up counts
 SWING_DEG = 30.0  # of a wire in strong wind, to each side
 NEAR_WIRES_M = 120.0  # of a span from its support that is looked at
+FLOOR_STEP_M = 2.0  # between places of a way whose height over the ground is looked at
 PIECE_M = 20.0  # of a span, with the height of its higher end
 DIRECTIONS = 16  # in which a column is bounded
 _ANGLES = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
@@ -68,12 +69,21 @@ class Span:
     sag_m: float = 0.0
 
 
+def no_floor(places: FloatArray) -> FloatArray:
+    """Of a keep-out that allows any height over the ground."""
+    return np.full(len(places), -np.inf)
+
+
 @dataclass(frozen=True, eq=False)
 class KeepOut:
-    """Columns: bound float64 (c, DIRECTIONS), how far each reaches along NORMALS [m]; top_m (c,)."""
+    """Columns: bound float64 (c, DIRECTIONS), how far each reaches along NORMALS [m]; top_m (c,).
+
+    floor: the least height [m] at places (n, 2), such as the terrain's with what is kept above it.
+    """
 
     bound: FloatArray
     top_m: FloatArray
+    floor: Callable[[FloatArray], FloatArray] = field(default=no_floor)
 
     def __len__(self) -> int:
         return len(self.top_m)
@@ -81,15 +91,26 @@ class KeepOut:
     def holds(self, points: FloatArray) -> BoolArray:
         """Whether each point, (n, 3), is in a column."""
         along = points[:, :2] @ NORMALS.T
-        inside: BoolArray = ((along[:, None, :] < self.bound).all(axis=2) & (points[:, None, 2] < self.top_m)).any(axis=1)
-        return inside
+        inside = ((along[:, None, :] < self.bound).all(axis=2) & (points[:, None, 2] < self.top_m)).any(axis=1)
+        low: BoolArray = inside | (points[:, 2] < self.floor(points[:, :2]))
+        return low
 
     def meets(self, start: FloatArray, end: FloatArray) -> BoolArray:
         """Whether the straight way from each start to its end, (n, 3) each, leads through a column."""
         met = np.zeros(len(start), dtype=bool)
         for bound, top_m in zip(self.bound, self.top_m.tolist(), strict=True):
             met |= _clips(start, end, bound, top_m)
+        if self.floor is not no_floor:
+            met |= self._is_low(start, end)
         return met
+
+    def _is_low(self, start: FloatArray, end: FloatArray) -> BoolArray:
+        """Whether each way comes below the floor, looked at every FLOOR_STEP_M."""
+        longest_m = float(np.linalg.norm(end - start, axis=1).max(initial=0.0))
+        shares = np.linspace(0.0, 1.0, max(math.ceil(longest_m / FLOOR_STEP_M), 1) + 1)[:, None, None]
+        places = (start + (end - start) * shares).reshape(-1, 3)
+        low: BoolArray = (places[:, 2] < self.floor(places[:, :2])).reshape(len(shares), len(start)).any(axis=0)
+        return low
 
     def top_between(self, start: FloatArray, end: FloatArray) -> float:
         """The top of the highest column [m] that the line between two places crosses on the map, -inf where there is none."""
@@ -101,13 +122,15 @@ class KeepOut:
         return max(crossed, default=-math.inf)
 
 
-def keep_out(solids: Sequence[Solid], spans: Sequence[Span], clearance: float) -> KeepOut:
+def keep_out(
+    solids: Sequence[Solid], spans: Sequence[Span], clearance: float, floor: Callable[[FloatArray], FloatArray] = no_floor
+) -> KeepOut:
     """Return the columns of supports and of the spans between them, clearance [m] wider and higher than they are."""
     columns = [_column(solid.triangles.reshape(-1, 3)[:, :2], float(solid.triangles[:, :, 2].max()), clearance) for solid in solids]
     for span in spans:
         columns += _span_columns(span, clearance)
     bound = np.array([bound for bound, _ in columns]).reshape(-1, DIRECTIONS)
-    return KeepOut(bound, np.array([top_m for _, top_m in columns]))
+    return KeepOut(bound, np.array([top_m for _, top_m in columns]), floor)
 
 
 def _column(places: FloatArray, top_m: float, clearance: float) -> tuple[FloatArray, float]:

@@ -75,8 +75,9 @@ def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Ca
             tall = (place[:, 2] >= rules.min_height_m) & (place[:, 2] <= rules.max_height_m)
             here = np.where(~tall, best[Limit.HEIGHT], np.where(~aimed, best[Limit.GIMBAL], best[Limit.DISTANCE]))
             could = np.flatnonzero(free & tall & aimed & (rank > 0))
+            low = keep_out.floor(place[:, :2]) > place[:, 2]
             outside = could[~keep_out.holds(place[could])]
-            rank = np.where(free, np.minimum(rank, here), rank)
+            rank = np.where(free, np.minimum(rank, np.where(low, best[Limit.HEIGHT], here)), rank)
             seeing = outside[caster.is_free(start[outside], place[outside])]
             rank[seeing] = 0
             places.append(place[seeing])
