@@ -26,7 +26,7 @@ CASES = [
     ("wooden pole, 20 kV", ZOOM, 0.002),
 ]
 MAX_HEIGHT_M = 120.0
-FRAME_PIXELS = (600, 450)  # of rendered pictures
+FRAME_PIXELS = (1600, 1200)  # of rendered pictures
 
 each_case = pytest.mark.parametrize(("tower", "camera", "gsd_m"), CASES, ids=[f"{tower}, {camera.name}" for tower, camera, _ in CASES])
 
