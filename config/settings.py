@@ -19,6 +19,7 @@ from mavlink.timeouts import TransferRules
 from missions.command_rules import CommandLifetimes
 from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
 from planning.rules import FlightRules, RoutingRules, SeparationRules
+from planning.views.keep_out import ClearanceRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
 STATE_DIR = state_directory()
@@ -339,6 +340,10 @@ FLOWN_HEIGHTS = FlownHeights(
     tolerance_m=FLIGHT_RULES.terrain_tolerance_m,
     margin_m=ZONE_RULES.height_margin_m,
     max_agl_m=FLIGHT_RULES.max_agl_m,
+)
+CLEARANCE_RULES = ClearanceRules(
+    floor_m=number("SPANWISE_WIRE_CLEARANCE_M", ClearanceRules.floor_m),
+    position_sd_m=number("SPANWISE_POSITION_SD_M", ClearanceRules.position_sd_m),
 )
 SEPARATION_RULES = SeparationRules(
     lateral_m=number("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),

@@ -22,6 +22,7 @@ from missions.views.plans import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.selections import SelectionDetail, SelectionList
 from missions.views.starts import MissionPlannedStarts, MissionReturns, PlannedStartsList
+from missions.views.view_plans import CameraCatalogue, ViewPlans
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),
@@ -30,6 +31,8 @@ urlpatterns = [
     path("plans/later-departure", LaterDeparture.as_view(), name="api-plans-later-departure"),
     path("plans/legal-windows", PlanLegalWindows.as_view(), name="api-plans-legal-windows"),
     path("reachability", Reachability.as_view(), name="api-reachability"),
+    path("view-plans", ViewPlans.as_view(), name="api-view-plans"),
+    path("camera-catalogue", CameraCatalogue.as_view(), name="api-camera-catalogue"),
     path("missions", views.MissionList.as_view(), name="api-missions"),
     path("missions/filters", views.MissionFilterChoices.as_view(), name="api-mission-filters"),
     path("missions/delete", views.MissionsDelete.as_view(), name="api-missions-delete"),

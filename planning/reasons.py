@@ -25,6 +25,12 @@ SENTENCES = register_sentences(
         "target_unreachable": gettext_noop("A target of this route cannot be reached any more. Plan again."),
         "uav_now_inside_zone": gettext_noop("This UAV stands inside a no-fly zone now. Plan again."),
         "uav_flies_no_route": gettext_noop("This UAV flies no route."),
+        # what is wrong with a camera
+        "camera_not_positive": gettext_noop("Must be greater than 0."),
+        "camera_focal_lengths": gettext_noop("State at least one focal length in mm; several in ascending order."),
+        "camera_gimbal": gettext_noop("The lowest angle must not be above the highest; both lie between -180 and 180."),
+        "camera_offset": gettext_noop("Must be numbers."),
+        "camera_pixels_not_square": gettext_noop("With this sensor pixels would not be square. Check its size and the numbers of pixels."),
         # why no route visits a target
         "asset_deleted": gettext_noop("The asset has been deleted since it was picked."),
         "above_height_limit": gettext_noop(

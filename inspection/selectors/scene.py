@@ -132,13 +132,7 @@ def scene_in(box: Box) -> SceneContent:
     west, south, east, north = box
     middle = np.array([(west + east) / 2, (south + north) / 2])
     found, left_out = _overhead(box, middle)
-    assets = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=found.support[found.support >= 0].tolist()))}
-    lines = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=sorted({line for own in found.span_lines for line in own})))}
-    supports, spans = drawn(
-        found,
-        {pk: SceneSupportFacts(asset.subtype or "tower", asset.max_voltage_v, asset.tags) for pk, asset in assets.items()},
-        {pk: LineFacts(line.max_voltage_v, line.circuits, line.tags, is_minor=line.subtype == "minor_line") for pk, line in lines.items()},
-    )
+    supports, spans, assets = drawn_as_tagged(found)
     railways = [(asset, _shape(asset, clip)) for asset in _in_area(AssetKind.RAILWAY, clip).filter(is_flyable=True)]
     zones = NoFlyZone.objects.filter(geometry__intersects=area_of(clip)).annotate(wkb=AsWKB("geometry")).defer("geometry")
     kept_railways, left_out["railways"] = _nearest(railways, middle, MAX_RAILWAYS)
@@ -161,6 +155,28 @@ def scene_in(box: Box) -> SceneContent:
         zones=_zones(kept_zones),
         left_out=left_out,
     )
+
+
+def drawn_as_tagged(found: Overhead) -> tuple[list[DrawnSupport], list[DrawnSpan], dict[int, Asset]]:
+    """Return supports and spans in the order of `found`, and the assets of supports by primary key."""
+    assets = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=found.support[found.support >= 0].tolist()))}
+    lines = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=sorted({line for own in found.span_lines for line in own})))}
+    supports, spans = drawn(
+        found,
+        {pk: SceneSupportFacts(asset.subtype or "tower", asset.max_voltage_v, asset.tags) for pk, asset in assets.items()},
+        {pk: LineFacts(line.max_voltage_v, line.circuits, line.tags, is_minor=line.subtype == "minor_line") for pk, line in lines.items()},
+    )
+    return supports, spans, assets
+
+
+def overhead_in(box: Box) -> Overhead:
+    """Return the supports of a box, and every span that touches it.
+
+    Rows are read twice: first the lines that touch the box, then everything within reach of their spans.
+    """
+    _, lines = supports_and_lines(box)
+    supports, lines = supports_and_lines(_reach(box, lines))
+    return overhead(supports, lines, box)
 
 
 def _sides_m(box: Box) -> tuple[float, float]:
@@ -203,10 +219,8 @@ def _reported(positions: FloatArray, ground: SceneGround) -> FloatArray:
 
 
 def _overhead(box: Box, middle: FloatArray) -> tuple[Overhead, dict[str, int]]:
-    """Return supports and spans, read twice: first the lines that touch the box, then everything within reach of their spans."""
-    _, lines = supports_and_lines(box)
-    supports, lines = supports_and_lines(_reach(box, lines))
-    found = overhead(supports, lines, box)
+    """Return the supports and spans nearest to the middle, and the numbers of those beyond."""
+    found = overhead_in(box)
     stays = _nearest_places(found.position, middle, MAX_SUPPORTS)
     centre = found.position[found.span].mean(axis=1)
     hangs = _nearest_places(centre, middle, MAX_SPANS)

@@ -33,6 +33,7 @@ class UavType(models.Model):
     rotor_disk_m2 = models.FloatField(null=True, blank=True, help_text="area swept by all rotors; empty = 0.206, the Iris's")
     hover_power_w = models.FloatField(null=True, blank=True, help_text="watts in a calm hover, if measured; empty = worked out")
     sensors = ArrayField(models.CharField(max_length=50), default=list, blank=True)
+    cameras = models.JSONField(default=list, db_default=[], blank=True, help_text="see planning/views/camera.py, camera_to_json")
     alert_limits = models.JSONField(
         default=dict,
         db_default={},

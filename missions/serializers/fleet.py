@@ -10,6 +10,7 @@ from missions.serializers.inputs import MAX_RANGE_M, MAX_SPEED_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_POWER_W
 from missions.serializers.performance import fault_words
+from missions.serializers.view_plans import CameraSerializer
 from planning.energy.performance import (
     AIRSPEEDS_MPS,
     BATTERIES_WH,
@@ -23,6 +24,7 @@ from planning.energy.performance import (
 from workspace.api import strict_serializers as serializers
 
 MAX_SENSORS = 12
+MAX_CAMERAS = 6
 
 
 class UavTypeSerializer(KnownFieldsSerializer):
@@ -44,6 +46,7 @@ class UavTypeSerializer(KnownFieldsSerializer):
         allow_null=True, required=False, max_value=MAX_POWER_W, help_text="in a calm hover, as measured; null: worked out"
     )
     sensors = serializers.ListField(child=serializers.CharField(max_length=50), required=False, max_length=MAX_SENSORS)
+    cameras = CameraSerializer(many=True, required=False, help_text="that its UAVs carry, at most six; with different names")
     uav_count = serializers.IntegerField(read_only=True)
     revision = serializers.IntegerField(read_only=True, help_text="the ETag")
     updated_at = serializers.DateTimeField(read_only=True)
@@ -65,6 +68,13 @@ class UavTypeSerializer(KnownFieldsSerializer):
 
     def validate_sensors(self, value: list[str]) -> list[str]:
         return list(dict.fromkeys(value))
+
+    def validate_cameras(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        if len(value) > MAX_CAMERAS:
+            raise serializers.ValidationError(_("A type has at most %(most)s cameras.") % {"most": MAX_CAMERAS})
+        if len({camera["name"].casefold() for camera in value}) < len(value):
+            raise serializers.ValidationError(_("Two cameras have the same name."))
+        return value
 
 
 class BaseSerializer(KnownFieldsSerializer):
@@ -138,7 +148,7 @@ class UavMissionPageSerializer(serializers.Serializer):
 def uav_type_json(row: UavType) -> dict[str, Any]:
     names = (
         "name", "max_range_m", "range_unlimited", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps",
-        "rotor_disk_m2", "hover_power_w", "sensors", "uav_count", "revision", "updated_at",
+        "rotor_disk_m2", "hover_power_w", "sensors", "cameras", "uav_count", "revision", "updated_at",
     )  # fmt: skip
     return {"id": row.pk} | {name: getattr(row, name) for name in names}
 

@@ -4,6 +4,7 @@ Formulas of the pinhole camera: K. Kraus, Photogrammetry, 2nd edition, chapter 1
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -50,8 +51,8 @@ class Camera:
     pixels_wide: int
     pixels_high: int
     focal_lengths_mm: tuple[float, ...]
-    min_interval_s: float = 1.0
-    nearest_focus_m: float = 0.0
+    min_interval_s: float = 2.0
+    nearest_focus_m: float = 1.0
     shutter_s: float = 1.0 / 1000.0
     gimbal: Gimbal = Gimbal()
     offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -176,14 +177,13 @@ def camera_to_json(camera: Camera) -> dict[str, Any]:
     }
 
 
-def camera_from_json(value: dict[str, Any]) -> Camera:
-    """Raises InvalidCamera."""
-    gimbal = Gimbal(
-        value["gimbal_pitch_min_deg"], value["gimbal_pitch_max_deg"], value.get("gimbal_yaw_min_deg"), value.get("gimbal_yaw_max_deg")
-    )
+def camera_from_json(value: Mapping[str, Any]) -> Camera:
+    """Return the camera; figures that are left out have their defaults. Raises InvalidCamera."""
+    given = {name: value[name] for name in ("min_interval_s", "nearest_focus_m", "shutter_s", "is_thermal") if name in value}
+    angles = {name: value[f"gimbal_{name}"] for name in ("pitch_min_deg", "pitch_max_deg", "yaw_min_deg", "yaw_max_deg")
+              if f"gimbal_{name}" in value}  # fmt: skip
     forward_m, right_m, up_m = value.get("offset_m", (0.0, 0.0, 0.0))
     return Camera(
         value["name"], value["sensor_width_mm"], value["sensor_height_mm"], value["pixels_wide"], value["pixels_high"],
-        tuple(value["focal_lengths_mm"]), value["min_interval_s"], value["nearest_focus_m"], value["shutter_s"], gimbal,
-        (forward_m, right_m, up_m), value["is_thermal"],
+        tuple(value["focal_lengths_mm"]), gimbal=Gimbal(**angles), offset_m=(forward_m, right_m, up_m), **given,
     )  # fmt: skip

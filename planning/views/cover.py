@@ -106,26 +106,39 @@ def _relaxed(photos: _Photos, area: FloatArray, needed: FloatArray, start: IntAr
     At any time the value of the relaxation over a part of the photos, divided by the greatest price of a photo, is a bound for all
     (A. A. Farley, A note on bounding a class of linear programming problems, Operations Research 38, 1990).
     """
-    patches = photos.shows.shape[1]
     pool = np.unique(np.concatenate([start, photos.shows.argmax(axis=0)]))
     bound = 0.0
     for _ in range(MAX_ROUNDS):
+        first, group = _alike(photos.shows[pool], area)
+        own_m2 = np.zeros((len(first), area.shape[1]))
+        np.add.at(own_m2, group, area)
         found = linprog(  # type: ignore[call-overload]  # its stubs know no sparse matrices
-            np.concatenate([np.ones(len(pool)), np.zeros(patches)]),
-            A_ub=_rows(photos.sparse[pool], area),
-            b_ub=np.concatenate([np.zeros(patches), -needed]),
-            bounds=np.vstack([np.tile([0.0, np.inf], (len(pool), 1)), np.tile([0.0, 1.0], (patches, 1))]),
+            np.concatenate([np.ones(len(pool)), np.zeros(len(first))]),
+            A_ub=_rows(csr_array(photos.shows[np.ix_(pool, first)].astype(np.float64)), own_m2),
+            b_ub=np.concatenate([np.zeros(len(first)), -needed]),
+            bounds=np.vstack([np.tile([0.0, np.inf], (len(pool), 1)), np.tile([0.0, 1.0], (len(first), 1))]),
             method="highs",
         )
         if found.x is None:
             break
-        price = photos.sparse @ -found.ineqlin.marginals[:patches]
+        of_group = -found.ineqlin.marginals[: len(first)] / own_m2.sum(axis=1)
+        price = photos.sparse @ (of_group[group] * area.sum(axis=1))
         highest = float(price.max())
         bound = max(bound, found.fun / max(highest, 1.0))
         if highest <= 1.0 + 1e-4 or math.ceil(bound - 1e-4) >= math.ceil(found.fun - 1e-4):
             break
         pool = np.union1d(pool, np.argsort(-price)[:PRICED])
     return pool, math.ceil(bound - 1e-4)
+
+
+def _alike(shows: BoolArray, area: FloatArray) -> tuple[IntArray, IntArray]:
+    """Patches of one kind that the same photos show count as one: the first of each group, and the group of each patch.
+
+    A price of the group is shared among its patches by area.
+    """
+    packed = np.ascontiguousarray(np.vstack([np.packbits(shows, axis=0), np.packbits(area > 0.0, axis=1).T]).T)
+    _, first, group = np.unique(packed.view(f"V{packed.shape[1]}").ravel(), return_index=True, return_inverse=True)
+    return first.astype(np.int64), np.asarray(group, dtype=np.int64).ravel()
 
 
 def _improved(photos: _Photos, area: FloatArray, needed: FloatArray, start: IntArray, bound: int) -> IntArray:

@@ -22,7 +22,7 @@ BEYOND_M = 0.5  # of the keep-out, for candidate positions
 ABOVE_M = (0.5, 6.0)  # the top of the keep-out
 DISTANCE_SHARES = (0.0, 0.35, 0.75)  # of the way from the keep-out to the farthest place
 LEAST_COSINE = 0.2  # of a pitch, by which steps of yaw are widened
-CUBE_M = 1.5  # side of a cube with one place of those that are looked for by patch
+CUBES_M = (1.5, 0.5)  # sides of cubes with one place each, of those from where patches can be seen that no candidate sees
 MUCH = 0.2  # of what the photo shows that shows the most
 REACH_M = 80.0  # from the asset's axis, of candidate positions
 LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
@@ -57,9 +57,11 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
     limits = limits_of(patches, keep_out, caster, camera, rules, farthest_m)
     positions = candidate_positions(solid, keep_out, rules, farthest_m)
     sight = line_of_sight(positions, patches, caster, farthest_m)
-    more = _further_positions(limits, np.asarray(~sight.any(axis=0)))
-    positions = np.concatenate([positions, more])
-    sight = np.concatenate([sight, line_of_sight(more, patches, caster, farthest_m)]) & _pitch_reached(positions, patches, camera)
+    for cube_m in CUBES_M:
+        more = _further_positions(limits, np.asarray(~sight.any(axis=0)), cube_m)
+        positions = np.concatenate([positions, more])
+        sight = np.concatenate([sight, line_of_sight(more, patches, caster, farthest_m)])
+    sight &= _pitch_reached(positions, patches, camera)
     lens = _lens(camera, rules, positions, patches, sight)
     photos, shows = _photos(positions, patches, sight, camera, lens)
     if not len(photos):
@@ -97,10 +99,10 @@ def candidate_positions(solid: Solid, keep_out: KeepOut, rules: DetailRules, far
     return positions[~keep_out.holds(positions)] if len(positions) else positions
 
 
-def _further_positions(limits: Limits, missing: BoolArray) -> FloatArray:
+def _further_positions(limits: Limits, missing: BoolArray, cube_m: float) -> FloatArray:
     """Places from where patches can be photographed that no candidate sees, one in each cube."""
     places = limits.place[missing[limits.patch]]
-    _, first = np.unique(np.floor(places / CUBE_M), axis=0, return_index=True)
+    _, first = np.unique(np.floor(places / cube_m), axis=0, return_index=True)
     return places[first]
 
 
@@ -176,9 +178,10 @@ def _photos(positions: FloatArray, patches: Patches, sight: BoolArray, camera: C
 
 
 def _worthwhile(shows: BoolArray, area_m2: FloatArray) -> BoolArray:
-    """Photos that show much, and of each patch the one that shows the most."""
+    """Photos that show much, and for patches that none of them shows the one that shows the most."""
     shown_m2 = np.asarray(csr_array(shows) @ area_m2)
     kept: BoolArray = shown_m2 >= MUCH * shown_m2.max()
     order = np.argsort(-shown_m2, kind="stable")
-    kept[order[shows[order].argmax(axis=0)]] = True
+    for patch in np.flatnonzero(~shows[kept].any(axis=0) & shows.any(axis=0)).tolist():
+        kept[order[shows[order, patch].argmax()]] = True
     return kept

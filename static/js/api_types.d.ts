@@ -861,6 +861,180 @@ export interface components {
             height_m?: number | null;
             is_flyable?: boolean;
         };
+        /** @description A camera body with one lens, on a gimbal. */
+        Camera: {
+            name: string;
+            /** Format: double */
+            sensor_width_mm: number;
+            /** Format: double */
+            sensor_height_mm: number;
+            pixels_wide: number;
+            pixels_high: number;
+            /** @description real focal lengths, not 35 mm equivalents, shortest first; several for a zoom */
+            focal_lengths_mm: number[];
+            /**
+             * Format: double
+             * @description seconds between two photos
+             * @default 2
+             */
+            min_interval_s: number;
+            /**
+             * Format: double
+             * @default 1
+             */
+            nearest_focus_m: number;
+            /**
+             * Format: double
+             * @description exposure time of a photo
+             * @default 0.001
+             */
+            shutter_s: number;
+            /**
+             * Format: double
+             * @description lowest angle, -90 looks straight down
+             * @default -90
+             */
+            gimbal_pitch_min_deg: number;
+            /**
+             * Format: double
+             * @description highest angle, 0 is the horizon
+             * @default 0
+             */
+            gimbal_pitch_max_deg: number;
+            /**
+             * Format: double
+             * @description null: the UAV turns instead
+             */
+            gimbal_yaw_min_deg?: number | null;
+            /** Format: double */
+            gimbal_yaw_max_deg?: number | null;
+            /** @description of the lens from the antenna: forward, right, up */
+            offset_m?: number[];
+            /** @default false */
+            is_thermal: boolean;
+        };
+        CameraCatalogue: {
+            results: components["schemas"]["CatalogueCamera"][];
+        };
+        /** @description A camera body with one lens, on a gimbal. */
+        CameraRequest: {
+            name: string;
+            /** Format: double */
+            sensor_width_mm: number;
+            /** Format: double */
+            sensor_height_mm: number;
+            pixels_wide: number;
+            pixels_high: number;
+            /** @description real focal lengths, not 35 mm equivalents, shortest first; several for a zoom */
+            focal_lengths_mm: number[];
+            /**
+             * Format: double
+             * @description seconds between two photos
+             * @default 2
+             */
+            min_interval_s: number;
+            /**
+             * Format: double
+             * @default 1
+             */
+            nearest_focus_m: number;
+            /**
+             * Format: double
+             * @description exposure time of a photo
+             * @default 0.001
+             */
+            shutter_s: number;
+            /**
+             * Format: double
+             * @description lowest angle, -90 looks straight down
+             * @default -90
+             */
+            gimbal_pitch_min_deg: number;
+            /**
+             * Format: double
+             * @description highest angle, 0 is the horizon
+             * @default 0
+             */
+            gimbal_pitch_max_deg: number;
+            /**
+             * Format: double
+             * @description null: the UAV turns instead
+             */
+            gimbal_yaw_min_deg?: number | null;
+            /** Format: double */
+            gimbal_yaw_max_deg?: number | null;
+            /** @description of the lens from the antenna: forward, right, up */
+            offset_m?: number[];
+            /** @default false */
+            is_thermal: boolean;
+        };
+        /** @description A camera body with one lens, on a gimbal. */
+        CatalogueCamera: {
+            name: string;
+            /** Format: double */
+            sensor_width_mm: number;
+            /** Format: double */
+            sensor_height_mm: number;
+            pixels_wide: number;
+            pixels_high: number;
+            /** @description real focal lengths, not 35 mm equivalents, shortest first; several for a zoom */
+            focal_lengths_mm: number[];
+            /**
+             * Format: double
+             * @description seconds between two photos
+             * @default 2
+             */
+            min_interval_s: number;
+            /**
+             * Format: double
+             * @default 1
+             */
+            nearest_focus_m: number;
+            /**
+             * Format: double
+             * @description exposure time of a photo
+             * @default 0.001
+             */
+            shutter_s: number;
+            /**
+             * Format: double
+             * @description lowest angle, -90 looks straight down
+             * @default -90
+             */
+            gimbal_pitch_min_deg: number;
+            /**
+             * Format: double
+             * @description highest angle, 0 is the horizon
+             * @default 0
+             */
+            gimbal_pitch_max_deg: number;
+            /**
+             * Format: double
+             * @description null: the UAV turns instead
+             */
+            gimbal_yaw_min_deg?: number | null;
+            /** Format: double */
+            gimbal_yaw_max_deg?: number | null;
+            /** @description of the lens from the antenna: forward, right, up */
+            offset_m?: number[];
+            /** @default false */
+            is_thermal: boolean;
+            key: string;
+            maker: string;
+            payload: string;
+            sources: components["schemas"]["CatalogueSource"][];
+            /** @description how figures without a source follow from others */
+            derived: {
+                [key: string]: string;
+            };
+        };
+        CatalogueSource: {
+            title: string;
+            /** @description empty where there is no page to name */
+            url: string;
+            date: string;
+            figures: string[];
+        };
         ChangeCollection: {
             type: components["schemas"]["FeatureCollectionType"];
             features: components["schemas"]["ChangeFeature"][];
@@ -1115,6 +1289,62 @@ export interface components {
             /** @description no real aircraft */
             is_simulated: boolean;
         };
+        ComponentCoverage: {
+            component: components["schemas"]["ComponentEnum"];
+            /** @description among those of its kind, from 0 */
+            number: number;
+            /** Format: double */
+            area_m2: number;
+            /**
+             * Format: double
+             * @description share of the area, 0 to 1
+             */
+            shown: number;
+            /**
+             * Format: double
+             * @description share of the area that a photo can show
+             */
+            reachable: number;
+            /**
+             * Format: double
+             * @description 95 % of what is shown is as fine or finer
+             */
+            gsd_mm: number | null;
+            /**
+             * Format: double
+             * @description from the surface's normal, likewise
+             */
+            angle_deg: number | null;
+            /**
+             * @description why most of the rest cannot be shown
+             *
+             *     * `hidden` - hidden
+             *     * `height` - height
+             *     * `gimbal` - gimbal
+             *     * `distance` - distance
+             */
+            limit: (components["schemas"]["LimitEnum"] | components["schemas"]["NullEnum"]) | null;
+        };
+        /**
+         * @description * `foundation` - foundation
+         *     * `plate` - plate
+         *     * `body` - body
+         *     * `head` - head
+         *     * `crossarm` - crossarm
+         *     * `string` - string
+         *     * `clamp` - clamp
+         *     * `earth_wire_peak` - earth_wire_peak
+         *     * `guy` - guy
+         *     * `deck` - deck
+         *     * `face` - face
+         *     * `underside` - underside
+         *     * `pier` - pier
+         *     * `bearing` - bearing
+         *     * `track` - track
+         *     * `mast` - mast
+         * @enum {string}
+         */
+        ComponentEnum: "foundation" | "plate" | "body" | "head" | "crossarm" | "string" | "clamp" | "earth_wire_peak" | "guy" | "deck" | "face" | "underside" | "pier" | "bearing" | "track" | "mast";
         /** @description Wind and temperature during the flight; without wind it is calm. */
         ConditionsOutput: {
             wind: components["schemas"]["WindLayerOutput"][];
@@ -2154,6 +2384,13 @@ export interface components {
          * @enum {string}
          */
         HeightReference: "AGL" | "AMSL" | "WGS84" | "STD";
+        /**
+         * @description * `tag` - tag
+         *     * `line` - line
+         *     * `assumed` - assumed
+         * @enum {string}
+         */
+        HeightSourceC16Enum: "tag" | "line" | "assumed";
         /** @description Heights in each reference; null where the terrain is unknown. */
         Heights: {
             ground_amsl_m: (number | null)[];
@@ -2577,6 +2814,14 @@ export interface components {
              */
             reference: components["schemas"]["HeightReference"] | components["schemas"]["BlankEnum"];
         };
+        /**
+         * @description * `hidden` - hidden
+         *     * `height` - height
+         *     * `gimbal` - gimbal
+         *     * `distance` - distance
+         * @enum {string}
+         */
+        LimitEnum: "hidden" | "height" | "gimbal" | "distance";
         /** @description A height with its reference. */
         LimitInputRequest: {
             /** Format: double */
@@ -3924,6 +4169,8 @@ export interface components {
              */
             hover_power_w?: number | null;
             sensors?: string[];
+            /** @description that its UAVs carry, at most six; with different names */
+            cameras?: components["schemas"]["CameraRequest"][];
         };
         PatchedUavWriteRequest: components["schemas"]["PatchedUavFlatRequest"] | components["schemas"]["PatchedUavFeatureRequest"];
         /** @description Fields to change. */
@@ -4099,6 +4346,30 @@ export interface components {
             total_duration_s: number;
             /** Format: double */
             total_energy_wh: number | null;
+        };
+        PlannedPhoto: {
+            /** @description lon, lat */
+            position: number[];
+            /**
+             * Format: double
+             * @description above the ground under the UAV
+             */
+            height_agl_m: number;
+            /**
+             * Format: double
+             * @description above the ground at the tower
+             */
+            height_m: number;
+            /**
+             * Format: double
+             * @description from true north, clockwise
+             */
+            yaw_deg: number;
+            /**
+             * Format: double
+             * @description 0 is the horizon, -90 straight down
+             */
+            pitch_deg: number;
         };
         PlannedPoint: {
             waypoint: number;
@@ -6548,7 +6819,7 @@ export interface components {
              * @description above its ground; what planners count
              */
             height_m: number;
-            height_source: components["schemas"]["SupportHeightSourceEnum"];
+            height_source: components["schemas"]["HeightSourceC16Enum"];
             /**
              * Format: double
              * @description above its ground, as it is drawn: below height_m where it likely is
@@ -6569,13 +6840,6 @@ export interface components {
             /** @description where earth wires hang: across, height above ground [m] */
             earth: number[][];
         };
-        /**
-         * @description * `tag` - tag
-         *     * `line` - line
-         *     * `assumed` - assumed
-         * @enum {string}
-         */
-        SupportHeightSourceEnum: "tag" | "line" | "assumed";
         /**
          * @description * `tower` - tower
          *     * `pole` - pole
@@ -6818,6 +7082,20 @@ export interface components {
              * @description null where a battery is not known
              */
             energy_wh: number | null;
+        };
+        TowerModel: {
+            form: string;
+            /** Format: double */
+            height_m: number;
+            height_source: components["schemas"]["HeightSourceC16Enum"];
+            /** Format: double */
+            voltage_v: number | null;
+            is_anchor: boolean;
+            /**
+             * Format: double
+             * @description of the line at the tower
+             */
+            bearing_deg: number;
         };
         TrackFlight: {
             ending: string;
@@ -7375,6 +7653,8 @@ export interface components {
              */
             hover_power_w?: number | null;
             sensors?: string[];
+            /** @description that its UAVs carry, at most six; with different names */
+            cameras?: components["schemas"]["Camera"][];
             readonly uav_count: number;
             /** @description the ETag */
             readonly revision: number;
@@ -7428,6 +7708,8 @@ export interface components {
              */
             hover_power_w?: number | null;
             sensors?: string[];
+            /** @description that its UAVs carry, at most six; with different names */
+            cameras?: components["schemas"]["CameraRequest"][];
         };
         UavWriteRequest: components["schemas"]["UavFlatRequest"] | components["schemas"]["UavFeatureRequest"];
         /** @description Unacknowledged alerts: open ones, and critical ones that have ended. */
@@ -7636,6 +7918,73 @@ export interface components {
         };
         VerificationMail: {
             was_mailed: boolean;
+        };
+        ViewCoverage: {
+            /** Format: double */
+            shown: number;
+            /** Format: double */
+            reachable: number;
+            /** Format: double */
+            shown_of_reachable: number;
+            components: components["schemas"]["ComponentCoverage"][];
+        };
+        ViewPlan: {
+            asset: number;
+            camera: components["schemas"]["Camera"];
+            /** Format: double */
+            gsd_mm: number;
+            /**
+             * Format: double
+             * @description with which the photos are taken
+             */
+            focal_length_mm: number;
+            /**
+             * Format: double
+             * @description distance up to which they are fine enough
+             */
+            farthest_m: number;
+            /**
+             * Format: double
+             * @description least distance from wires and supports
+             */
+            clearance_m: number;
+            model: components["schemas"]["TowerModel"];
+            /** @description in the order in which they are taken */
+            photos: components["schemas"]["PlannedPhoto"][];
+            /** @description no choice among the candidates shows as much with fewer photos */
+            photos_bound: number;
+            /** @description lon, lat, and metres above the ground at the tower; from above the tower and back to there */
+            route: number[][];
+            /** Format: double */
+            length_m: number;
+            /** Format: double */
+            duration_s: number;
+            coverage: components["schemas"]["ViewCoverage"];
+            /** @description no-fly zones that the flight would meet at some time: it cannot be flown then */
+            zones: components["schemas"]["ViewPlanZone"][];
+        };
+        /** @description Which tower, with which camera, and how fine. */
+        ViewPlanInputRequest: {
+            /** @description id of a power tower */
+            asset: number;
+            camera?: components["schemas"]["CameraRequest"];
+            /** @description of the catalogue, in place of `camera` */
+            camera_key?: string;
+            /**
+             * Format: double
+             * @description ground sample distance: what a pixel shows at most, across the optical axis
+             */
+            gsd_mm: number;
+            /**
+             * Format: double
+             * @description of the UAV above the ground
+             * @default 4
+             */
+            min_height_m: number;
+        };
+        ViewPlanZone: {
+            id: number;
+            name: string;
         };
         VoltageCount: {
             voltage_v: number;
@@ -8216,6 +8565,11 @@ export type BulkEditRequest = components['schemas']['BulkEditRequest'];
 export type BulkUndoOutput = components['schemas']['BulkUndoOutput'];
 export type BulkUndoRequest = components['schemas']['BulkUndoRequest'];
 export type BulkValuesRequest = components['schemas']['BulkValuesRequest'];
+export type Camera = components['schemas']['Camera'];
+export type CameraCatalogue = components['schemas']['CameraCatalogue'];
+export type CameraRequest = components['schemas']['CameraRequest'];
+export type CatalogueCamera = components['schemas']['CatalogueCamera'];
+export type CatalogueSource = components['schemas']['CatalogueSource'];
 export type ChangeCollection = components['schemas']['ChangeCollection'];
 export type ChangeFeature = components['schemas']['ChangeFeature'];
 export type ChangeProperties = components['schemas']['ChangeProperties'];
@@ -8234,6 +8588,8 @@ export type CommandParametersRequest = components['schemas']['CommandParametersR
 export type CommandPriority = components['schemas']['CommandPriority'];
 export type CommandState = components['schemas']['CommandState'];
 export type CommandUav = components['schemas']['CommandUav'];
+export type ComponentCoverage = components['schemas']['ComponentCoverage'];
+export type ComponentEnum = components['schemas']['ComponentEnum'];
 export type ConditionsOutput = components['schemas']['ConditionsOutput'];
 export type ConditionsRequest = components['schemas']['ConditionsRequest'];
 export type Connect = components['schemas']['Connect'];
@@ -8323,6 +8679,7 @@ export type HandRouteRequest = components['schemas']['HandRouteRequest'];
 export type HandSpeed = components['schemas']['HandSpeed'];
 export type Heaviest = components['schemas']['Heaviest'];
 export type HeightReference = components['schemas']['HeightReference'];
+export type HeightSourceC16Enum = components['schemas']['HeightSourceC16Enum'];
 export type Heights = components['schemas']['Heights'];
 export type HeightsInputReferenceEnum = components['schemas']['HeightsInputReferenceEnum'];
 export type HeightsInputRequest = components['schemas']['HeightsInputRequest'];
@@ -8356,6 +8713,7 @@ export type LegRequest = components['schemas']['LegRequest'];
 export type LegalWindows = components['schemas']['LegalWindows'];
 export type LegalWindowsInputRequest = components['schemas']['LegalWindowsInputRequest'];
 export type Limit = components['schemas']['Limit'];
+export type LimitEnum = components['schemas']['LimitEnum'];
 export type LimitInputRequest = components['schemas']['LimitInputRequest'];
 export type Line = components['schemas']['Line'];
 export type LineTypeEnum = components['schemas']['LineTypeEnum'];
@@ -8460,6 +8818,7 @@ export type Plan = components['schemas']['Plan'];
 export type PlanInputRequest = components['schemas']['PlanInputRequest'];
 export type PlanLock = components['schemas']['PlanLock'];
 export type PlanTotals = components['schemas']['PlanTotals'];
+export type PlannedPhoto = components['schemas']['PlannedPhoto'];
 export type PlannedPoint = components['schemas']['PlannedPoint'];
 export type PlannedRoute = components['schemas']['PlannedRoute'];
 export type PlannedStart = components['schemas']['PlannedStart'];
@@ -8623,7 +8982,6 @@ export type SubjectTypeEnum = components['schemas']['SubjectTypeEnum'];
 export type SubscriptionInputRequest = components['schemas']['SubscriptionInputRequest'];
 export type SubscriptionProposal = components['schemas']['SubscriptionProposal'];
 export type Support = components['schemas']['Support'];
-export type SupportHeightSourceEnum = components['schemas']['SupportHeightSourceEnum'];
 export type SupportKindEnum = components['schemas']['SupportKindEnum'];
 export type SupportsOutput = components['schemas']['SupportsOutput'];
 export type TakeOff = components['schemas']['TakeOff'];
@@ -8645,6 +9003,7 @@ export type TokenInputRequest = components['schemas']['TokenInputRequest'];
 export type TokenList = components['schemas']['TokenList'];
 export type TokenScope = components['schemas']['TokenScope'];
 export type Totals = components['schemas']['Totals'];
+export type TowerModel = components['schemas']['TowerModel'];
 export type TrackFlight = components['schemas']['TrackFlight'];
 export type TroubleEnum = components['schemas']['TroubleEnum'];
 export type TypeAirframe = components['schemas']['TypeAirframe'];
@@ -8687,6 +9046,10 @@ export type VehicleReport = components['schemas']['VehicleReport'];
 export type VehicleText = components['schemas']['VehicleText'];
 export type VehicleTextPage = components['schemas']['VehicleTextPage'];
 export type VerificationMail = components['schemas']['VerificationMail'];
+export type ViewCoverage = components['schemas']['ViewCoverage'];
+export type ViewPlan = components['schemas']['ViewPlan'];
+export type ViewPlanInputRequest = components['schemas']['ViewPlanInputRequest'];
+export type ViewPlanZone = components['schemas']['ViewPlanZone'];
 export type VoltageCount = components['schemas']['VoltageCount'];
 export type WaitingCommand = components['schemas']['WaitingCommand'];
 export type WaitingStart = components['schemas']['WaitingStart'];

@@ -13,7 +13,7 @@ from workspace.models import Organisation, User
 
 TYPE_FIELDS = (
     "name", "max_range_m", "range_unlimited", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps",
-    "rotor_disk_m2", "hover_power_w", "sensors",
+    "rotor_disk_m2", "hover_power_w", "sensors", "cameras",
 )  # fmt: skip
 
 

@@ -41,7 +41,7 @@ def test_half_a_pixel_of_blur_at_a_five_hundredth_is_a_slow_flight() -> None:
     assert blur_px(0.25, 1 / 500, 0.001) == pytest.approx(0.5)
     camera = Camera("slow", 13.2, 8.8, 5472, 3648, (8.8,), shutter_s=1 / 500)
     assert max_speed_mps(camera, 0.004, math.inf) == pytest.approx(1.0)
-    assert max_speed_mps(camera, 0.004, 0.5) == pytest.approx(0.5), "photos follow each other after a second at the earliest"
+    assert max_speed_mps(camera, 0.004, 0.5) == pytest.approx(0.25), "photos follow each other after two seconds"
 
 
 @given(cameras, lengths)

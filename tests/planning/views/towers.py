@@ -37,9 +37,8 @@ def support(
 def standing(own: DrawnSupport) -> StandingTower:
     solid, kept_m = tower_solid(own), clearance_m(own.voltage_v, ClearanceRules())
     across = [place for place, _ in (*own.arms.slots, *own.arms.earth)]
-    spans = tuple(
-        Span((0.0, 0.0), (0.0, side * SPAN_M), min(across), max(across), own.likely_m, own.likely_m, SAG_M) for side in (1.0, -1.0)
-    )
+    sides = ((1.0, min(across), max(across)), (-1.0, -max(across), -min(across)))  # left and right change where a span leads back
+    spans = tuple(Span((0.0, 0.0), (0.0, side * SPAN_M), left, right, own.likely_m, own.likely_m, SAG_M) for side, left, right in sides)
     return StandingTower(own, solid, spans, kept_m, keep_out([solid], spans, kept_m))
 
 

@@ -1,0 +1,135 @@
+"""Photos of towers: how much they show, how many they are against a bound, how near the flight comes to wires, and what planning takes.
+
+    python -m benchmarks.planning.view_plans [--towers N] [--write]
+
+Twenty models of towers, three cameras of the catalogue, two ground sample distances. Coverage is measured on patches that are a third as
+long as the planner's; what can be shown is looked for from each patch, not among the planner's candidates. Nearest approach is
+that of places every 0.3 m (0.1 s at 3 m/s) to all triangles and to wires with and without sag, still and swung, by plain formulas.
+The bound is that of the linear relaxation over all candidate photos. --write puts the table into docs/performance.md.
+Exits with 1 where less than 95 % of what can be shown is shown, or a flight comes nearer than the clearance.
+"""
+
+import argparse
+import sys
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.report import machine, table, write_section
+from planning.views.camera import standoff_m
+from planning.views.catalogue import catalogue
+from planning.views.coverage import coverage_of
+from planning.views.detail_views import REACH_M, DetailViews, detail_views
+from planning.views.keep_out import SWING_DEG
+from planning.views.limits import LIMITS, DetailRules, Limit, limits_of
+from planning.views.solids import patches_of
+from planning.views.view_flight import view_flight
+from planning.views.visibility import RayCaster
+from tests.planning.views.geometry_oracle import flown_places, to_triangles_m, to_wires_m
+from tests.planning.views.towers import TOWERS, StandingTower, standing
+
+TITLE = "Photos of towers"
+CAMERAS = ("dji-m30t-zoom", "dji-p1-50", "dji-m4e-tele")
+GSDS_M = (0.002, 0.004)
+SHARE = 0.95
+PATCH_M, STEP_M, NEAR_WIRES_M = 0.8, 0.3, 100.0
+MAX_HEIGHT_M = 120.0
+
+
+class Measured(NamedTuple):
+    """Of one tower, camera and GSD; clearance_m is what the nearest approach has beyond what is asked for."""
+
+    share: float
+    reachable: float
+    photos: int
+    bound: int
+    spare_m: float
+    plan_s: float
+    flight_s: float
+    limit: str
+
+
+def measured(stands: StandingTower, key: str, gsd_m: float) -> Measured:
+    camera, rules = catalogue()[key].camera, DetailRules(gsd_m)
+    began = time.process_time()
+    views = detail_views(stands.solid, stands.keep_out, camera, rules)
+    planned = time.process_time()
+    entry = np.array([0.0, 0.0, float(stands.keep_out.top_m.max()) + 2.0])
+    flight = view_flight(views.poses, stands.keep_out, entry, MAX_HEIGHT_M, entry)
+    flown = time.process_time()
+    patches, caster = patches_of(stands.solid, PATCH_M), RayCaster([stands.solid])
+    farthest_m = min(standoff_m(camera, gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
+    limits = limits_of(patches, stands.keep_out, caster, camera, rules, farthest_m)
+    coverage = coverage_of(views.poses, views.lens, camera, patches, caster, limits.limit)
+    barred_m2 = np.bincount(limits.limit, patches.area_m2, minlength=len(LIMITS))
+    barred_m2[LIMITS.index(Limit.NONE)] = 0.0
+    return Measured(
+        coverage.share, float(patches.area_m2[coverage.reachable].sum() / patches.area_m2.sum()), len(views.poses), views.bound,
+        nearest_m(stands, flown_places(flight, STEP_M)) - stands.clearance_m, planned - began, flown - planned,
+        LIMITS[int(barred_m2.argmax())].value,
+    )  # fmt: skip
+
+
+def nearest_m(stands: StandingTower, places: np.ndarray) -> float:
+    """The nearest approach to the tower and its wires."""
+    nearest = to_triangles_m(places, stands.solid.triangles).min()
+    wires = (*stands.support.arms.slots, *stands.support.arms.earth)
+    for span in stands.spans:
+        turned = tuple((across * (1.0 if span.end[1] > 0 else -1.0), height) for across, height in wires)
+        nearest = min(nearest, to_wires_m(places, span, turned, SWING_DEG, NEAR_WIRES_M).min())
+    return float(nearest)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--towers", type=int, default=len(TOWERS))
+    parser.add_argument("--write", action="store_true")
+    arguments = parser.parse_args()
+    warm_up()
+    found: dict[tuple[str, float], list[Measured]] = {}
+    for name in list(TOWERS)[: arguments.towers]:
+        stands = standing(TOWERS[name])
+        for key in CAMERAS:
+            for gsd_m in GSDS_M:
+                own = measured(stands, key, gsd_m)
+                found.setdefault((key, gsd_m), []).append(own)
+                print(name, key, f"{gsd_m * 1000:.0f} mm", *(f"{value:.3f}" if isinstance(value, float) else value for value in own), flush=True)
+    rows = [[key, f"{gsd_m * 1000:.0f}", *summary(own)] for (key, gsd_m), own in found.items()]
+    every = [own for cases in found.values() for own in cases]
+    rows.append(["all", "", *summary(every)])
+    heads = ["camera", "GSD [mm]", "least shown of what can be shown", "can be shown", "photos", "over the bound: all, most",
+             "nearest approach beyond the clearance [m]", "CPU to plan, median [s]", "most [s]"]  # fmt: skip
+    print(table(heads, rows))
+    if arguments.write:
+        told = f"`python -m benchmarks.planning.view_plans`: {len(every)} cases. {machine('numpy', 'scipy', 'embreex')}"
+        write_section(TITLE, f"{told}\n\n{table(heads, rows)}")
+    return int(any(own.share < SHARE or own.spare_m < 0.0 for own in every if own.photos))
+
+
+def summary(cases: list[Measured]) -> list[str]:
+    some = [own for own in cases if own.photos]
+    taken_s = [own.plan_s + own.flight_s for own in some]
+    reachable = [own.reachable for own in cases]
+    return [
+        f"{min(own.share for own in some):.1%}",
+        f"{min(reachable):.0%} to {max(reachable):.0%}",
+        str(sum(own.photos for own in some)),
+        f"{sum(own.photos for own in some) / sum(own.bound for own in some):.2f}, {max(own.photos / own.bound for own in some):.2f}",
+        f"{min(own.spare_m for own in some):+.2f}",
+        f"{np.median(taken_s):.1f}",
+        f"{max(taken_s):.1f}",
+    ]
+
+
+def warm_up() -> DetailViews:
+    """Import and compile what the first plan would."""
+    stands = standing(TOWERS["wooden pole, 20 kV"])
+    views = detail_views(stands.solid, stands.keep_out, catalogue()[CAMERAS[0]].camera, DetailRules(GSDS_M[0]))
+    entry = np.array([0.0, 0.0, float(stands.keep_out.top_m.max()) + 2.0])
+    view_flight(views.poses, stands.keep_out, entry, MAX_HEIGHT_M, entry)
+    return views
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,166 @@
+"""Cameras, and plans of photos, in and out."""
+
+from typing import Any
+
+from django.utils.translation import gettext as _
+
+from missions.fields import AboveZeroField, BetweenField
+from missions.serializers.known_fields import KnownFieldsSerializer
+from planning.views.camera import InvalidCamera, camera_from_json, camera_to_json
+from planning.views.catalogue import CatalogueCamera, catalogue
+from planning.views.coverage import LIMITS
+from planning.views.solids import Component
+from workspace.api import strict_serializers as serializers
+from workspace.api.fields import FiniteFloatField
+from workspace.reason_texts import reason_text
+
+MAX_MM, MAX_PIXELS, MAX_ZOOM_STEPS = 1_000.0, 50_000, 20
+GSDS_MM = (0.1, 100.0)
+HEIGHTS_M = (2.0, 60.0)
+ANGLES_DEG = (-180.0, 180.0)
+
+
+class CameraSerializer(KnownFieldsSerializer):
+    """A camera body with one lens, on a gimbal."""
+
+    name = serializers.CharField(max_length=100)
+    sensor_width_mm = AboveZeroField(max_value=MAX_MM)
+    sensor_height_mm = AboveZeroField(max_value=MAX_MM)
+    pixels_wide = serializers.IntegerField(min_value=1, max_value=MAX_PIXELS)
+    pixels_high = serializers.IntegerField(min_value=1, max_value=MAX_PIXELS)
+    focal_lengths_mm = serializers.ListField(
+        child=AboveZeroField(max_value=10 * MAX_MM), min_length=1, max_length=MAX_ZOOM_STEPS,
+        help_text="real focal lengths, not 35 mm equivalents, shortest first; several for a zoom",
+    )  # fmt: skip
+    min_interval_s = AboveZeroField(max_value=MAX_MM, required=False, help_text="seconds between two photos")
+    nearest_focus_m = FiniteFloatField(min_value=0.0, max_value=MAX_MM, required=False)
+    shutter_s = AboveZeroField(max_value=10.0, required=False, help_text="exposure time of a photo")
+    gimbal_pitch_min_deg = BetweenField(ANGLES_DEG, required=False, help_text="lowest angle, -90 looks straight down")
+    gimbal_pitch_max_deg = BetweenField(ANGLES_DEG, required=False, help_text="highest angle, 0 is the horizon")
+    gimbal_yaw_min_deg = FiniteFloatField(
+        min_value=-360.0, max_value=360.0, allow_null=True, required=False, help_text="null: the UAV turns instead"
+    )
+    gimbal_yaw_max_deg = FiniteFloatField(min_value=-360.0, max_value=360.0, allow_null=True, required=False)
+    offset_m = serializers.ListField(
+        child=FiniteFloatField(min_value=-10.0, max_value=10.0), min_length=3, max_length=3, required=False,
+        help_text="of the lens from the antenna: forward, right, up",
+    )  # fmt: skip
+    is_thermal = serializers.BooleanField(required=False)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        """Return the figures as they are stored; those of a changed type's camera are all needed too."""
+        missing = [name for name, field in self.fields.items() if field.required and name not in attrs]
+        if missing:
+            raise serializers.ValidationError({name: [self.fields[name].error_messages["required"]] for name in missing})
+        try:
+            return camera_to_json(camera_from_json(attrs))
+        except InvalidCamera as error:
+            faults = {"gimbal_pitch_max_deg" if name == "gimbal" else name: reason_text(why) for name, why in error.faults.items()}
+            raise serializers.ValidationError(faults) from error
+
+
+class CatalogueSourceSerializer(serializers.Serializer):
+    title = serializers.CharField()
+    url = serializers.CharField(help_text="empty where there is no page to name")
+    date = serializers.CharField()
+    figures = serializers.ListField(child=serializers.CharField())
+
+
+class CatalogueCameraSerializer(CameraSerializer):
+    key = serializers.CharField()
+    maker = serializers.CharField()
+    payload = serializers.CharField()
+    sources = CatalogueSourceSerializer(many=True)
+    derived = serializers.DictField(child=serializers.CharField(), help_text="how figures without a source follow from others")
+
+
+class CameraCatalogueSerializer(serializers.Serializer):
+    results = CatalogueCameraSerializer(many=True)
+
+
+class ViewPlanInputSerializer(KnownFieldsSerializer):
+    """Which tower, with which camera, and how fine."""
+
+    asset = serializers.IntegerField(min_value=1, help_text="id of a power tower")
+    camera = CameraSerializer(required=False)
+    camera_key = serializers.CharField(required=False, help_text="of the catalogue, in place of `camera`")
+    gsd_mm = BetweenField(GSDS_MM, help_text="ground sample distance: what a pixel shows at most, across the optical axis")
+    min_height_m = BetweenField(HEIGHTS_M, default=4.0, help_text="of the UAV above the ground")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if ("camera" in attrs) == ("camera_key" in attrs):
+            raise serializers.ValidationError({"camera": _("State a camera or a key of the catalogue, and only one of them.")})
+        if "camera_key" in attrs:
+            known = catalogue().get(attrs["camera_key"])
+            if known is None:
+                raise serializers.ValidationError({"camera_key": _("The catalogue has no such camera.")})
+            return attrs | {"camera": known.camera}
+        return attrs | {"camera": camera_from_json(attrs["camera"])}
+
+
+class TowerModelSerializer(serializers.Serializer):
+    form = serializers.CharField()
+    height_m = serializers.FloatField()
+    height_source = serializers.ChoiceField(choices=["tag", "line", "assumed"])
+    voltage_v = serializers.FloatField(allow_null=True)
+    is_anchor = serializers.BooleanField()
+    bearing_deg = serializers.FloatField(help_text="of the line at the tower")
+
+
+class PlannedPhotoSerializer(serializers.Serializer):
+    position = serializers.ListField(child=serializers.FloatField(), help_text="lon, lat")
+    height_agl_m = serializers.FloatField(help_text="above the ground under the UAV")
+    height_m = serializers.FloatField(help_text="above the ground at the tower")
+    yaw_deg = serializers.FloatField(help_text="from true north, clockwise")
+    pitch_deg = serializers.FloatField(help_text="0 is the horizon, -90 straight down")
+
+
+class ComponentCoverageSerializer(serializers.Serializer):
+    component = serializers.ChoiceField(choices=[own.value for own in Component])
+    number = serializers.IntegerField(help_text="among those of its kind, from 0")
+    area_m2 = serializers.FloatField()
+    shown = serializers.FloatField(help_text="share of the area, 0 to 1")
+    reachable = serializers.FloatField(help_text="share of the area that a photo can show")
+    gsd_mm = serializers.FloatField(allow_null=True, help_text="95 % of what is shown is as fine or finer")
+    angle_deg = serializers.FloatField(allow_null=True, help_text="from the surface's normal, likewise")
+    limit = serializers.ChoiceField(
+        choices=[own.value for own in LIMITS if own], allow_null=True, help_text="why most of the rest cannot be shown"
+    )
+
+
+class ViewCoverageSerializer(serializers.Serializer):
+    shown = serializers.FloatField()
+    reachable = serializers.FloatField()
+    shown_of_reachable = serializers.FloatField()
+    components = ComponentCoverageSerializer(many=True)
+
+
+class ViewPlanZoneSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+
+
+class ViewPlanSerializer(serializers.Serializer):
+    asset = serializers.IntegerField()
+    camera = CameraSerializer()
+    gsd_mm = serializers.FloatField()
+    focal_length_mm = serializers.FloatField(help_text="with which the photos are taken")
+    farthest_m = serializers.FloatField(help_text="distance up to which they are fine enough")
+    clearance_m = serializers.FloatField(help_text="least distance from wires and supports")
+    model = TowerModelSerializer()
+    photos = PlannedPhotoSerializer(many=True, help_text="in the order in which they are taken")
+    photos_bound = serializers.IntegerField(help_text="no choice among the candidates shows as much with fewer photos")
+    route = serializers.ListField(
+        child=serializers.ListField(child=serializers.FloatField()),
+        help_text="lon, lat, and metres above the ground at the tower; from above the tower and back to there",
+    )
+    length_m = serializers.FloatField()
+    duration_s = serializers.FloatField()
+    coverage = ViewCoverageSerializer()
+    zones = ViewPlanZoneSerializer(many=True, help_text="no-fly zones that the flight would meet at some time: it cannot be flown then")
+
+
+def catalogue_json(own: CatalogueCamera) -> dict[str, Any]:
+    return camera_to_json(own.camera) | {
+        "key": own.key, "maker": own.maker, "payload": own.payload, "sources": list(own.sources), "derived": own.derived,
+    }  # fmt: skip

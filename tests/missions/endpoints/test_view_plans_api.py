@@ -1,0 +1,139 @@
+"""Photos of a tower over the API: cameras of types and of the catalogue, plans, and what is wrong with requests."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from django.test import Client
+
+from inspection.geodesy.local_frame import LocalFrame
+from planning.views.catalogue import catalogue
+from tests.accounts.users import a_user, client_of
+from tests.inspection import ground
+from tests.missions.api import patch, post
+from tests.missions.worlds import power_line, world, zone_around
+from workspace.models import Role
+
+pytestmark = pytest.mark.django_db
+
+ANY = {"If-Match": "*"}
+ZOOM = "dji-m30t-zoom"
+CAMERA: dict[str, Any] = {
+    "name": "Full frame", "sensor_width_mm": 35.9, "sensor_height_mm": 24.0, "pixels_wide": 8192, "pixels_high": 5460,
+    "focal_lengths_mm": [35.0], "gimbal_pitch_min_deg": -130, "gimbal_pitch_max_deg": 40,
+}  # fmt: skip
+
+
+@pytest.fixture
+def client() -> Client:
+    return client_of(a_user(Role.OPERATOR))
+
+
+def planned(client: Client, body: dict[str, Any]) -> Any:
+    response = post(client, "view-plans", body)
+    assert response.status_code == 200, response.content
+    return response.json()
+
+
+def test_the_catalogue_tells_every_camera_with_its_sources(client: Client) -> None:
+    rows = client.get("/api/v1/camera-catalogue").json()["results"]
+    assert {row["key"] for row in rows} == set(catalogue())
+    assert all(row["sources"] and row["maker"] and row["focal_lengths_mm"] for row in rows)
+
+
+def test_a_type_carries_cameras_and_gives_them_back(client: Client) -> None:
+    made = post(client, "uav-types", {"name": "Kestrel", "cameras": [CAMERA]})
+    assert made.status_code == 201, made.content
+    camera = made.json()["cameras"][0]
+    assert camera.items() >= CAMERA.items()
+    assert (camera["min_interval_s"], camera["is_thermal"], camera["offset_m"]) == (2.0, False, [0.0, 0.0, 0.0])
+    changed = patch(client, f"uav-types/{made.json()['id']}", {"cameras": [camera, CAMERA | {"name": "Spare"}]}, **ANY)
+    assert [own["name"] for own in changed.json()["cameras"]] == ["Full frame", "Spare"]
+
+
+@pytest.mark.parametrize(
+    ("figures", "field"),
+    [({"pixels_high": 100}, "pixels_high"), ({"sensor_width_mm": 0}, "sensor_width_mm"),
+     ({"focal_lengths_mm": [50, 35]}, "focal_lengths_mm"),
+     ({"focal_lengths_mm": []}, "focal_lengths_mm"), ({"gimbal_pitch_min_deg": 50}, "gimbal_pitch_max_deg"), ({"zoom": 3}, "zoom")],
+)  # fmt: skip
+def test_a_camera_that_cannot_be_is_refused_by_its_field(client: Client, figures: dict[str, Any], field: str) -> None:
+    response = post(client, "uav-types", {"name": "Kestrel", "cameras": [CAMERA | figures]})
+    assert response.status_code == 400
+    assert f"cameras.0.{field}" in response.json()["error"]["details"]
+
+
+def test_a_changed_camera_needs_all_its_figures(client: Client) -> None:
+    made = post(client, "uav-types", {"name": "Kestrel", "cameras": [CAMERA]}).json()
+    response = patch(client, f"uav-types/{made['id']}", {"cameras": [{"name": "Full frame", "pixels_wide": 4000}]}, **ANY)
+    assert response.status_code == 400
+    assert "cameras.0.sensor_width_mm" in response.json()["error"]["details"]
+
+
+def test_two_cameras_of_a_type_have_different_names(client: Client) -> None:
+    response = post(client, "uav-types", {"name": "Kestrel", "cameras": [CAMERA, CAMERA | {"name": "full FRAME"}]})
+    assert response.status_code == 400
+    assert "cameras" in response.json()["error"]["details"]
+
+
+def test_photos_of_a_tower_keep_clear_of_its_line_and_show_it(client: Client) -> None:
+    towers = world(height_m=40.0).towers
+    plan = planned(client, {"asset": towers[2].pk, "camera_key": ZOOM, "gsd_mm": 2})
+    assert plan["model"]["height_m"] == 40.0
+    assert plan["coverage"]["shown_of_reachable"] >= 0.95
+    assert len(plan["photos"]) >= plan["photos_bound"] > 0
+    assert plan["duration_s"] > 0
+    assert plan["zones"] == []
+    frame = LocalFrame.around(*towers[2].centre.coords)
+    places = frame.to_metres(np.array([photo["position"] for photo in plan["photos"]]))
+    under = (np.abs(places[:, 1]) < plan["clearance_m"]) & (np.array([photo["height_m"] for photo in plan["photos"]]) < 40.0)
+    assert not under.any(), "the line leads east and west: no photo is taken from between its wires"
+    assert max(np.hypot(*places.T)) < 100.0
+    assert all(photo["height_agl_m"] >= 4.0 for photo in plan["photos"])
+    assert {row["component"] for row in plan["coverage"]["components"]} >= {"body", "crossarm", "clamp", "string", "plate"}
+    assert plan["route"][0] == plan["route"][-1]
+
+
+def test_a_finer_gsd_takes_more_photos_and_one_that_no_lens_reaches_none(client: Client) -> None:
+    tower = world(height_m=30.0).towers[2]
+    counts = [len(planned(client, {"asset": tower.pk, "camera": CAMERA, "gsd_mm": gsd_mm})["photos"]) for gsd_mm in (8, 4)]
+    assert counts[0] < counts[1]
+    nothing = planned(client, {"asset": tower.pk, "camera": CAMERA, "gsd_mm": 0.5})
+    assert nothing["photos"] == []
+    assert {row["limit"] for row in nothing["coverage"]["components"]} <= {"distance", "hidden", "height"}
+
+
+def test_a_zone_around_the_tower_is_named(client: Client) -> None:
+    tower = world(height_m=30.0).towers[2]
+    zone = zone_around(tower.centre.coords)
+    plan = planned(client, {"asset": tower.pk, "camera_key": ZOOM, "gsd_mm": 4})
+    assert plan["zones"] == [{"id": zone.pk, "name": "Airport"}]
+
+
+def test_a_parallel_line_is_kept_clear_of_too(client: Client) -> None:
+    tower = world(height_m=30.0).towers[2]
+    east_m = LocalFrame.around(*tower.centre.coords)
+    beside = east_m.to_degrees(np.array([[-250.0, 26.0], [0.0, 26.0], [250.0, 26.0]])).tolist()
+    power_line([ground.tower(tuple(place), height_m=30.0) for place in beside])
+    plan = planned(client, {"asset": tower.pk, "camera_key": ZOOM, "gsd_mm": 2})
+    north_m = east_m.to_metres(np.array([photo["position"] for photo in plan["photos"]]))[:, 1]
+    low = np.array([photo["height_m"] for photo in plan["photos"]]) < 30.0
+    assert not ((north_m > 26.0 - plan["clearance_m"]) & (north_m < 26.0 + plan["clearance_m"]) & low).any()
+
+
+@pytest.mark.parametrize(
+    ("body", "field"),
+    [({"gsd_mm": 0}, "gsd_mm"), ({"gsd_mm": 1e9}, "gsd_mm"), ({"min_height_m": 0}, "min_height_m"), ({"camera_key": "none"}, "camera_key"),
+     ({"camera": CAMERA}, "camera"), ({"asset": "no"}, "asset"), ({"gsd": 2}, "gsd")],
+)  # fmt: skip
+def test_what_is_wrong_with_a_request_is_told_by_field(client: Client, body: dict[str, Any], field: str) -> None:
+    response = post(client, "view-plans", {"asset": 1, "camera_key": ZOOM, "gsd_mm": 2} | body)
+    assert response.status_code == 400
+    assert field in response.json()["error"]["details"]
+
+
+def test_only_towers_of_lines_are_planned(client: Client) -> None:
+    here = world()
+    assert post(client, "view-plans", {"asset": here.bridge.pk, "camera_key": ZOOM, "gsd_mm": 2}).json()["error"]["code"] == "not_a_tower"
+    assert post(client, "view-plans", {"asset": 10**9, "camera_key": ZOOM, "gsd_mm": 2}).status_code == 404
+    assert post(Client(), "view-plans", {"asset": here.bridge.pk, "camera_key": ZOOM, "gsd_mm": 2}).status_code in {401, 403}
