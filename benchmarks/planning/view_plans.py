@@ -94,7 +94,8 @@ def main() -> int:
             for gsd_m in GSDS_M:
                 own = measured(stands, key, gsd_m)
                 found.setdefault((key, gsd_m), []).append(own)
-                print(name, key, f"{gsd_m * 1000:.0f} mm", *(f"{value:.3f}" if isinstance(value, float) else value for value in own), flush=True)
+                figures = (f"{value:.3f}" if isinstance(value, float) else value for value in own)
+                print(name, key, f"{gsd_m * 1000:.0f} mm", *figures, flush=True)
     rows = [[key, f"{gsd_m * 1000:.0f}", *summary(own)] for (key, gsd_m), own in found.items()]
     every = [own for cases in found.values() for own in cases]
     rows.append(["all", "", *summary(every)])

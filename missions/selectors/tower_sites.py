@@ -67,7 +67,7 @@ def _site(
     foot_m = ground_m(places)
     order = [own, *(place for place in range(len(drawn)) if place != own)]
     number = {place: count for count, place in enumerate(order)}
-    supports = [StandingSupport(drawn[place], *places[place].tolist(), float(foot_m[place])) for place in order]
+    supports = [StandingSupport(drawn[place], float(places[place, 0]), float(places[place, 1]), float(foot_m[place])) for place in order]
     spans = [HungSpan(number[span.start], number[span.end], span.sag_m) for span in hung]
     turned = [HungSpan(span.end, span.start, span.sag_m) for span in spans]  # wires are looked at near both of their ends
     return tower_site(supports, [*spans, *turned], settings.CLEARANCE_RULES, floor)

@@ -8,7 +8,7 @@ from missions.fields import AboveZeroField, BetweenField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from planning.views.camera import InvalidCamera, camera_from_json, camera_to_json
 from planning.views.catalogue import CatalogueCamera, catalogue
-from planning.views.coverage import LIMITS
+from planning.views.limits import LIMITS
 from planning.views.solids import Component
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField

@@ -143,20 +143,20 @@ def _alike(shows: BoolArray, area: FloatArray) -> tuple[IntArray, IntArray]:
 
 def _improved(photos: _Photos, area: FloatArray, needed: FloatArray, start: IntArray, bound: int) -> IntArray:
     """Ruin and recreate: take some photos with much in common away, fill up greedily with noise; no more than at the start."""
-    random = np.random.default_rng(SEED)
+    generator = np.random.default_rng(SEED)
     best = current = start
     common = np.asarray((photos.sparse @ photos.sparse.T).todense())
     for _ in range(RUINS):
         if len(best) <= bound:
             break
-        centre = int(random.integers(len(current)))
-        alike = common[current[centre], current] * random.uniform(0.5, 1.0, len(current))
-        kept = np.delete(current, np.argsort(-alike)[: int(random.integers(2, MAX_RUINED + 1))])
+        centre = int(generator.integers(len(current)))
+        alike = common[current[centre], current] * generator.uniform(0.5, 1.0, len(current))
+        kept = np.delete(current, np.argsort(-alike)[: int(generator.integers(2, MAX_RUINED + 1))])
         left = np.where(np.asarray(photos.shows[kept].any(axis=0))[:, None], 0.0, area)
         missing = needed - (area.sum(axis=0) - left.sum(axis=0))
         filled = kept.tolist()
         while (missing > SAME).any() and len(filled) < len(current):
-            gain = _gain(photos, left, missing, needed) * random.uniform(NOISE, 1.0, len(photos.shows))
+            gain = _gain(photos, left, missing, needed) * generator.uniform(NOISE, 1.0, len(photos.shows))
             taken = int(gain.argmax())
             filled.append(taken)
             missing -= left[photos.shows[taken]].sum(axis=0)

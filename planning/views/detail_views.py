@@ -21,7 +21,7 @@ MIN_PATCH_M, MAX_PATCH_M, PATCHES_HIGH = 1.0, 2.5, 16  # sides of patches, by th
 BEYOND_M = 0.5  # of the keep-out, for candidate positions
 ABOVE_M = (0.5, 6.0)  # the top of the keep-out
 DISTANCE_SHARES = (0.0, 0.35, 0.75)  # of the way from the keep-out to the farthest place
-LEAST_COSINE = 0.2  # of a pitch, by which steps of yaw are widened
+MIN_COSINE = 0.2  # of a pitch, by which steps of yaw are widened
 CUBES_M = (1.5, 0.5)  # sides of cubes with one place each, of those from where patches can be seen that no candidate sees
 MUCH = 0.2  # of what the photo shows that shows the most
 REACH_M = 80.0  # from the asset's axis, of candidate positions
@@ -160,7 +160,7 @@ def _photos(positions: FloatArray, patches: Patches, sight: BoolArray, camera: C
         turned = (yaw - middle + 180.0) % 360.0 - 180.0
         cells = np.unique(np.round(np.column_stack([turned * np.cos(np.radians(pitch)) / step_yaw, pitch / step_pitch])), axis=0)
         own_pitch = np.clip(cells[:, 1] * step_pitch, camera.gimbal.pitch_min_deg, camera.gimbal.pitch_max_deg)
-        own_yaw = (middle + cells[:, 0] * step_yaw / np.maximum(np.cos(np.radians(own_pitch)), LEAST_COSINE)) % 360.0
+        own_yaw = (middle + cells[:, 0] * step_yaw / np.maximum(np.cos(np.radians(own_pitch)), MIN_COSINE)) % 360.0
         shown = in_frame(position, own_yaw, own_pitch, patches.centre[seen], camera, lens)
         some = shown.any(axis=1)
         whole = np.zeros((int(some.sum()), len(patches)), dtype=bool)

@@ -92,16 +92,15 @@ class KeepOut:
         """Whether each point, (n, 3), is in a column."""
         along = points[:, :2] @ NORMALS.T
         inside = ((along[:, None, :] < self.bound).all(axis=2) & (points[:, None, 2] < self.top_m)).any(axis=1)
-        low: BoolArray = inside | (points[:, 2] < self.floor(points[:, :2]))
-        return low
+        return np.asarray(inside | (points[:, 2] < self.floor(points[:, :2])))
 
     def meets(self, start: FloatArray, end: FloatArray) -> BoolArray:
         """Whether the straight way from each start to its end, (n, 3) each, leads through a column."""
         met = np.zeros(len(start), dtype=bool)
         for bound, top_m in zip(self.bound, self.top_m.tolist(), strict=True):
-            met |= _clips(start, end, bound, top_m)
+            met = np.asarray(met | _clips(start, end, bound, top_m))
         if self.floor is not no_floor:
-            met |= self._is_low(start, end)
+            met = np.asarray(met | self._is_low(start, end))
         return met
 
     def _is_low(self, start: FloatArray, end: FloatArray) -> BoolArray:

@@ -875,32 +875,25 @@ export interface components {
             /**
              * Format: double
              * @description seconds between two photos
-             * @default 2
              */
-            min_interval_s: number;
-            /**
-             * Format: double
-             * @default 1
-             */
-            nearest_focus_m: number;
+            min_interval_s?: number;
+            /** Format: double */
+            nearest_focus_m?: number;
             /**
              * Format: double
              * @description exposure time of a photo
-             * @default 0.001
              */
-            shutter_s: number;
+            shutter_s?: number;
             /**
              * Format: double
              * @description lowest angle, -90 looks straight down
-             * @default -90
              */
-            gimbal_pitch_min_deg: number;
+            gimbal_pitch_min_deg?: number;
             /**
              * Format: double
              * @description highest angle, 0 is the horizon
-             * @default 0
              */
-            gimbal_pitch_max_deg: number;
+            gimbal_pitch_max_deg?: number;
             /**
              * Format: double
              * @description null: the UAV turns instead
@@ -910,8 +903,7 @@ export interface components {
             gimbal_yaw_max_deg?: number | null;
             /** @description of the lens from the antenna: forward, right, up */
             offset_m?: number[];
-            /** @default false */
-            is_thermal: boolean;
+            is_thermal?: boolean;
         };
         CameraCatalogue: {
             results: components["schemas"]["CatalogueCamera"][];
@@ -930,32 +922,25 @@ export interface components {
             /**
              * Format: double
              * @description seconds between two photos
-             * @default 2
              */
-            min_interval_s: number;
-            /**
-             * Format: double
-             * @default 1
-             */
-            nearest_focus_m: number;
+            min_interval_s?: number;
+            /** Format: double */
+            nearest_focus_m?: number;
             /**
              * Format: double
              * @description exposure time of a photo
-             * @default 0.001
              */
-            shutter_s: number;
+            shutter_s?: number;
             /**
              * Format: double
              * @description lowest angle, -90 looks straight down
-             * @default -90
              */
-            gimbal_pitch_min_deg: number;
+            gimbal_pitch_min_deg?: number;
             /**
              * Format: double
              * @description highest angle, 0 is the horizon
-             * @default 0
              */
-            gimbal_pitch_max_deg: number;
+            gimbal_pitch_max_deg?: number;
             /**
              * Format: double
              * @description null: the UAV turns instead
@@ -965,8 +950,7 @@ export interface components {
             gimbal_yaw_max_deg?: number | null;
             /** @description of the lens from the antenna: forward, right, up */
             offset_m?: number[];
-            /** @default false */
-            is_thermal: boolean;
+            is_thermal?: boolean;
         };
         /** @description A camera body with one lens, on a gimbal. */
         CatalogueCamera: {
@@ -982,32 +966,25 @@ export interface components {
             /**
              * Format: double
              * @description seconds between two photos
-             * @default 2
              */
-            min_interval_s: number;
-            /**
-             * Format: double
-             * @default 1
-             */
-            nearest_focus_m: number;
+            min_interval_s?: number;
+            /** Format: double */
+            nearest_focus_m?: number;
             /**
              * Format: double
              * @description exposure time of a photo
-             * @default 0.001
              */
-            shutter_s: number;
+            shutter_s?: number;
             /**
              * Format: double
              * @description lowest angle, -90 looks straight down
-             * @default -90
              */
-            gimbal_pitch_min_deg: number;
+            gimbal_pitch_min_deg?: number;
             /**
              * Format: double
              * @description highest angle, 0 is the horizon
-             * @default 0
              */
-            gimbal_pitch_max_deg: number;
+            gimbal_pitch_max_deg?: number;
             /**
              * Format: double
              * @description null: the UAV turns instead
@@ -1017,8 +994,7 @@ export interface components {
             gimbal_yaw_max_deg?: number | null;
             /** @description of the lens from the antenna: forward, right, up */
             offset_m?: number[];
-            /** @default false */
-            is_thermal: boolean;
+            is_thermal?: boolean;
             key: string;
             maker: string;
             payload: string;
