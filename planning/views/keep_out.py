@@ -98,9 +98,9 @@ class KeepOut:
         """Whether the straight way from each start to its end, (n, 3) each, leads through a column."""
         met = np.zeros(len(start), dtype=bool)
         for bound, top_m in zip(self.bound, self.top_m.tolist(), strict=True):
-            met = np.asarray(met | _clips(start, end, bound, top_m))
+            np.logical_or(met, _clips(start, end, bound, top_m), out=met)
         if self.floor is not no_floor:
-            met = np.asarray(met | self._is_low(start, end))
+            np.logical_or(met, self._is_low(start, end), out=met)
         return met
 
     def _is_low(self, start: FloatArray, end: FloatArray) -> BoolArray:
