@@ -32,6 +32,7 @@ def openapi_settings() -> dict[str, Any]:
             "DataIssueKind": "inspection.models.DataIssueKind",
             "WaypointKind": "missions.models.WaypointKind",
             "TaskKind": ["look", "photo", "hold"],
+            "HeightSource": ["tag", "line", "assumed"],
             "DaylightEvent": "inspection.zones.schedule.EVENTS",
             "JobState": "workspace.models.JobState",
             "Role": "workspace.models.Role",

@@ -108,8 +108,8 @@ class KeepOut:
         longest_m = float(np.linalg.norm(end - start, axis=1).max(initial=0.0))
         shares = np.linspace(0.0, 1.0, max(math.ceil(longest_m / FLOOR_STEP_M), 1) + 1)[:, None, None]
         places = (start + (end - start) * shares).reshape(-1, 3)
-        low: BoolArray = (places[:, 2] < self.floor(places[:, :2])).reshape(len(shares), len(start)).any(axis=0)
-        return low
+        low = (places[:, 2] < self.floor(places[:, :2])).reshape(len(shares), len(start))
+        return np.asarray(low.any(axis=0))
 
     def top_between(self, start: FloatArray, end: FloatArray) -> float:
         """The top of the highest column [m] that the line between two places crosses on the map, -inf where there is none."""

@@ -47,7 +47,7 @@ SHARED = {
     "asset_id", "issue_id", "entry_id", "proposal_id", "import_id", "upload_id", "set_id", "subscription_id", "zone_id", "region_id",
     "vehicle_id of unknown-vehicles",
 }  # fmt: skip
-PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte"}
+PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte", "ending"}
 APPS = ("mfa", "workspace", "missions", "telemetry", "simulation")
 REFUSED = {403, 404, 409}  # 409: it was not deleted, so that nothing is brought back
 OWN_DOINGS = {"workspace.signinentry", "workspace.idempotencykey", "workspace.browsersession"}  # of the stranger
