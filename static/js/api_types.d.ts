@@ -2366,7 +2366,7 @@ export interface components {
          *     * `assumed` - assumed
          * @enum {string}
          */
-        HeightSourceC16Enum: "tag" | "line" | "assumed";
+        HeightSource: "tag" | "line" | "assumed";
         /** @description Heights in each reference; null where the terrain is unknown. */
         Heights: {
             ground_amsl_m: (number | null)[];
@@ -6795,7 +6795,7 @@ export interface components {
              * @description above its ground; what planners count
              */
             height_m: number;
-            height_source: components["schemas"]["HeightSourceC16Enum"];
+            height_source: components["schemas"]["HeightSource"];
             /**
              * Format: double
              * @description above its ground, as it is drawn: below height_m where it likely is
@@ -7063,7 +7063,7 @@ export interface components {
             form: string;
             /** Format: double */
             height_m: number;
-            height_source: components["schemas"]["HeightSourceC16Enum"];
+            height_source: components["schemas"]["HeightSource"];
             /** Format: double */
             voltage_v: number | null;
             is_anchor: boolean;
@@ -8655,7 +8655,7 @@ export type HandRouteRequest = components['schemas']['HandRouteRequest'];
 export type HandSpeed = components['schemas']['HandSpeed'];
 export type Heaviest = components['schemas']['Heaviest'];
 export type HeightReference = components['schemas']['HeightReference'];
-export type HeightSourceC16Enum = components['schemas']['HeightSourceC16Enum'];
+export type HeightSource = components['schemas']['HeightSource'];
 export type Heights = components['schemas']['Heights'];
 export type HeightsInputReferenceEnum = components['schemas']['HeightsInputReferenceEnum'];
 export type HeightsInputRequest = components['schemas']['HeightsInputRequest'];
