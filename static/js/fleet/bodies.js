@@ -47,6 +47,7 @@ const bodyOfType = (type) => ({
   rotor_disk_m2: type.rotor_disk_m2,
   hover_power_w: type.hover_power_w,
   sensors: type.sensors,
+  cameras: type.cameras,
 });
 
 /** @param {BaseBody} base @returns {BaseBody} */
@@ -94,6 +95,7 @@ export function blankBody(tab) {
       rotor_disk_m2: null,
       hover_power_w: null,
       sensors: [],
+      cameras: [],
     };
   return { name: "", position: null, note: "" };
 }
