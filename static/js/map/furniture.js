@@ -16,6 +16,9 @@ export function scaleOf(metres_per_px) {
   return { length_m, width_px: length_m / metres_per_px };
 }
 
+/** "2 km" of "2.0 km" and "2,0 km"; thousands stay as they are. @param {string} length */
+export const roundText = (length) => length.replace(/[.,]0(?!\d)/, "");
+
 /** @param {MapLibreMap} map */
 export function mountScale(map) {
   const scale = byId("scale");
@@ -23,7 +26,7 @@ export function mountScale(map) {
     const latitude = map.getCenter().lat;
     const metres_per_px = (40_075_016.686 * Math.cos((latitude * Math.PI) / 180)) / (512 * 2 ** map.getZoom());
     const { length_m, width_px } = scaleOf(metres_per_px);
-    find(scale, "span").textContent = lengthText(length_m).replace(".0", "");
+    find(scale, "span").textContent = roundText(lengthText(length_m));
     find(scale, "i").style.width = `${width_px}px`;
   };
   map.on("move", draw);

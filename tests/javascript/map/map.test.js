@@ -4,7 +4,7 @@ import { nearestOnLine } from "../../../static/js/domain/geodesy.js";
 import { routeLetter, routeNumber } from "../../../static/js/domain/palette.js";
 import { hashOf, showsAnything, viewOf } from "../../../static/js/map/address.js";
 import { firstInOrder } from "../../../static/js/map/click_router.js";
-import { distinct } from "../../../static/js/map/furniture.js";
+import { distinct, roundText } from "../../../static/js/map/furniture.js";
 import { graticuleLines, graticuleStep } from "../../../static/js/map/layers/graticule.js";
 import { mergeDarts, mergedLabel, mergePills, pillWidth } from "../../../static/js/map/pills.js";
 import { plainWords } from "../../../static/js/map/tips.js";
@@ -200,5 +200,16 @@ test("UAVs that would cover each other's names are one mark with their number", 
   assert.deepEqual(summary([dart("Heron", 0, 0), dart("Kite", 0, 40)]), [
     ["Heron", 1],
     ["Kite", 1],
+  ]);
+});
+
+test("a scale's length loses a decimal zero, and thousands in any language stay", () => {
+  assert.deepEqual(["2.0 km", "2,0 km", "1.000 km", "1,000 km", "500 m", "0.05 mi"].map(roundText), [
+    "2 km",
+    "2 km",
+    "1.000 km",
+    "1,000 km",
+    "500 m",
+    "0.05 mi",
   ]);
 });

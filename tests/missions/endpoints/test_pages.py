@@ -66,6 +66,13 @@ def test_sign_in_works_without_the_cache(client: Client, operator: User, monkeyp
     assert client.get("/").status_code == 200
 
 
+@pytest.mark.parametrize(("typed", "shown"), [("/missions", "/"), ("/map?tool=box", "/missions/new?tool=box")])
+def test_addresses_that_users_type_lead_to_their_pages(client: Client, operator: User, typed: str, shown: str) -> None:
+    client.force_login(operator)
+    response = client.get(typed)
+    assert (response.status_code, response["Location"]) == (302, shown)
+
+
 def test_a_mission_of_another_organisation_is_not_found(client: Client, operator: User) -> None:
     own = Mission.objects.create(name="Ours", organisation=operator.organisation)
     other = Mission.objects.create(name="Theirs", organisation=Organisation.objects.create(name="Others"))
