@@ -1,5 +1,6 @@
 /** The forms of a UAV, a type and a base. */
 
+import { camerasField } from "../cameras/cameras_field.js";
 import { h, icon } from "../dom.js";
 import { numberField, switchField, textField } from "../page/fields.js";
 import { t } from "../text.js";
@@ -8,8 +9,8 @@ import { coordinateText, LONG_UNIT, lengthText, SPEED_UNIT, speedText } from "..
 import { AIRSPEED_BOUNDS, pair, placeFields, uavFields } from "./uav_form.js";
 import { LINKS } from "./words.js";
 
-/** @import { LinkKind } from "../api_types.d.ts" */
-/** @import { BaseBody, Body, FleetBase, FleetType, Form, FormFields, Position, Tab, TypeBody, UavBody } from "./types.d.ts" */
+/** @import { Camera, LinkKind } from "../api_types.d.ts" */
+/** @import { BaseBody, Body, Field, FleetBase, FleetType, Form, FormFields, Position, Tab, TypeBody, UavBody } from "./types.d.ts" */
 /** @import { FormContext } from "./uav_form.js" */
 
 /** @param {string} text divided by commas */
@@ -84,8 +85,9 @@ function typeFields(type) {
     hint: t("Divided by commas."),
   });
   const sensorList = { ...sensors, read: () => listOf(sensors.read()) };
+  const cameras = camerasField(type.cameras);
   return {
-    fields: [name, range, unlimited, speed, battery, mass, reserve, airspeed, disk, hover, sensorList],
+    fields: [name, range, unlimited, speed, battery, mass, reserve, airspeed, disk, hover, sensorList, cameras],
     elements: [
       name.element,
       pair(range, speed),
@@ -94,6 +96,7 @@ function typeFields(type) {
       pair(reserve, airspeed),
       pair(disk, hover),
       sensors.element,
+      cameras.element,
     ],
   };
 }
@@ -149,7 +152,7 @@ export function createForm({ tab, body, types, bases, isNew, isAdministrator, on
   });
   const all = [...fields, ...(place?.fields ?? [])];
   /** @param {string} name */
-  const fieldOf = (name) => all.find((field) => field.name === name);
+  const fieldOf = (name) => all.find((field) => field.name === name) ?? fieldWithin(all, name);
 
   return {
     element,
@@ -190,6 +193,10 @@ export function createForm({ tab, body, types, bases, isNew, isAdministrator, on
   };
 }
 
+/** The field of one figure of a list: "cameras.0.name". @param {Field[]} fields @param {string} name */
+const fieldWithin = (fields, name) =>
+  fields.map((field) => ("within" in field ? /** @type {any} */ (field).within(name) : undefined)).find(Boolean);
+
 /** @param {string} name of a field @param {unknown} value */
 function valueText(name, value) {
   if (value === null || value === "" || (Array.isArray(value) && !value.length)) return t("not stated");
@@ -197,6 +204,7 @@ function valueText(name, value) {
   if (name === "max_range_m") return lengthText(/** @type {number} */ (value));
   if (name === "cruise_speed_mps" || name === "max_airspeed_mps") return speedText(/** @type {number} */ (value));
   if (name === "link") return LINKS[/** @type {LinkKind} */ (value)].words;
+  if (name === "cameras") return /** @type {Camera[]} */ (value).map((camera) => camera.name).join(", ");
   if (typeof value === "boolean") return value ? t("yes") : t("no");
   return Array.isArray(value) ? value.join(", ") : `${value}`;
 }

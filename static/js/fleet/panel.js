@@ -9,6 +9,7 @@ import { mountConnect } from "./connect.js";
 import { mountConnection } from "./connection.js";
 import { mountCredentials } from "./credentials.js";
 import { mountTypeAirframe } from "./type_airframe.js";
+import { mountTypeCameras } from "./type_cameras.js";
 import { mountTypeLimits } from "./type_limits.js";
 import { MISSION_STATES, missingList, stateChip } from "./words.js";
 
@@ -103,9 +104,11 @@ function partsOfUav(uav, { canPlan, isAdministrator, acts }) {
 function partsOfType(type, { canPlan, acts: { failed } }) {
   const limits = h("div", { class: "type-limits" });
   const airframe = h("div", { class: "type-airframe" });
+  const cameras = h("div", { class: "type-cameras" });
+  mountTypeCameras(cameras, type);
   mountTypeLimits(limits, type, { canPlan, failed }).catch(failed);
   mountTypeAirframe(airframe, type, { canPlan, failed }).catch(failed);
-  return [h("h3", {}, t("Alerts")), limits, h("h3", {}, t("Simulation")), airframe];
+  return [h("h3", {}, t("Cameras")), cameras, h("h3", {}, t("Alerts")), limits, h("h3", {}, t("Simulation")), airframe];
 }
 
 /** @param {Row} row @param {Uav | null} uav the same, where it is one @param {PanelActs} acts */
