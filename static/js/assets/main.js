@@ -6,6 +6,7 @@ import { countsText } from "../map/look/region_words.js";
 import { readPage } from "../page/chrome.js";
 import { t, tn } from "../text.js";
 import { coordinateText, dateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
+import { closeViewPlan, viewPlanPart } from "../view_plan/part.js";
 import { editMarked } from "./bulk_edit.js";
 import { mountFilters } from "./filters.js";
 import { assetForm } from "./form.js";
@@ -114,6 +115,18 @@ function details(feature) {
   ].filter((part) => part instanceof Node);
 }
 
+/** The way to the photos of a tower. @param {AssetDetailFeature} feature */
+const photosPart = ({ id, properties }) =>
+  properties.kind === "tower" && !properties.vanished_at && viewPlanPart(id, records.map);
+
+/** The towers of a line in the list. @param {number} id @param {string} label */
+function showSupports(id, label) {
+  kind = ""; // a line has towers, poles and portals
+  find(document, "input[name=kind][value='']", HTMLInputElement).checked = true;
+  records.back();
+  filters.chooseLine(id, label);
+}
+
 /** @type {GroundPage} */
 const page = readPage();
 const regionNames = new Map((page.regions ?? []).map(({ id, name }) => [id, name]));
@@ -217,13 +230,8 @@ const ASSETS = {
   details,
   form: assetForm,
   act: (feature) => (page.canPlan && feature.properties.is_flyable ? planButton(feature) : null),
-  more: (feature) =>
-    inspectionsPart(feature, (id, label) => {
-      kind = ""; // a line has towers, poles and portals
-      find(document, "input[name=kind][value='']", HTMLInputElement).checked = true;
-      records.back();
-      filters.chooseLine(id, label);
-    }),
+  more: (feature) => h("div", {}, photosPart(feature), inspectionsPart(feature, showSupports)),
+  closed: closeViewPlan,
   row: ({ properties }) => ({
     icon: properties.kind,
     name: properties.label,

@@ -102,12 +102,17 @@ class RecordPage {
 
   /** @param {"find" | "show" | "edit"} view */
   go(view) {
+    if (view !== "show") this.#kind.closed?.();
     for (const [name, element] of Object.entries(this.#views)) element.hidden = name !== view;
     byId("record-foot").hidden = view !== "edit";
     /** @type {NodeListOf<HTMLElement>} */
     const others = document.querySelectorAll("[data-only-without-edit]");
     for (const element of others) element.hidden = view === "edit";
     byId("side-scroll").scrollTop = 0;
+  }
+
+  get map() {
+    return this.#ground.map;
   }
 
   /** The list again. */

@@ -92,6 +92,7 @@ export class RecordView {
   /** @param {Feature} feature @param {GroundHistoryPage} past */
   #draw(feature, past) {
     const { backWords, title, details, act, more } = this.#kind;
+    this.#kind.closed?.();
     const own = feature.properties.vanished_at ? null : act?.(feature);
     const back = h("button", { type: "button", class: "text-button back", onclick: () => this.back() });
     setChildren(back, icon("arrow-left", "small"), backWords);

@@ -75,6 +75,8 @@ export interface RecordKind<Feature extends RecordFeature, Row> {
   act?(feature: Feature): HTMLElement | null;
   /** what is shown between its facts and its history */
   more?(feature: Feature): HTMLElement | null;
+  /** what follows when it is no longer shown, or anew */
+  closed?(): void;
   form(feature: Feature | null, choice: string, kept: Facts | null): RecordForm;
   row(feature: Row): ListRow;
   /** parameters of the list besides a text and what the map shows; "" narrows nothing */

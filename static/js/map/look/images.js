@@ -1,4 +1,4 @@
-/** Hatch and arrows, drawn on a canvas in the palette's colours when the style first requests them. */
+/** Hatch, arrows and photos, drawn on a canvas in the palette's colours when the style first requests them. */
 
 /** @import { Palette } from "../../domain/palette.js" */
 /** @import { MapLibreMap } from "../types.d.ts" */
@@ -64,6 +64,23 @@ function arrow(palette, colour) {
   return pixels(pen);
 }
 
+/** What a photo shows from where it is taken, to the north; filled where it is chosen. @param {Palette} palette @param {boolean} isChosen */
+function photo(palette, isChosen) {
+  const pen = canvasOf(28);
+  pen.lineWidth = 1.5;
+  pen.lineJoin = "round";
+  pen.fillStyle = isChosen ? palette.ink : palette.raised;
+  pen.strokeStyle = isChosen ? palette.casing : palette.ink;
+  pen.beginPath();
+  pen.moveTo(14, 16);
+  pen.lineTo(8, 3);
+  pen.lineTo(20, 3);
+  pen.closePath();
+  pen.fill();
+  pen.stroke();
+  return pixels(pen);
+}
+
 /**
  * Where a UAV waits: a square for a base, a bolt on a disc for charging.
  *
@@ -102,6 +119,7 @@ function stop(palette, kind) {
 function draw(id, palette) {
   if (id === "hatch") return hatch(palette);
   if (id === "hatch-timed") return timedHatch(palette);
+  if (id === "photo" || id === "photo-chosen") return photo(palette, id === "photo-chosen");
   const kind = /^stop-(base|charging)$/.exec(id)?.[1];
   if (kind) return stop(palette, kind);
   const number = /^arrow-(\d+)$/.exec(id)?.[1];

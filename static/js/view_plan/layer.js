@@ -1,0 +1,102 @@
+/** The flight through the photos of a tower on the map: its line, and a cone per photo along its yaw. */
+
+import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
+
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { ViewPlan } from "../api_types.d.ts" */
+/** @import { MapLibreMap } from "../map/types.d.ts" */
+
+const ROUTE = "view-plan-route";
+const PHOTOS = "view-plan-photos";
+const NEAREST_ZOOM = 19;
+const PADDING_PX = 56;
+const SETTLED_MS = 350;
+
+/** @returns {LayerSpecification[]} */
+function layers() {
+  const round = { "line-cap": "round", "line-join": "round" };
+  const [casing, ink] = [readToken("--map-casing"), readToken("--accent")];
+  const cone = {
+    "icon-image": ["case", ["get", "isChosen"], "photo-chosen", "photo"],
+    "icon-rotate": ["get", "yaw_deg"],
+    "icon-rotation-alignment": "map",
+    "icon-allow-overlap": true,
+    "symbol-sort-key": ["case", ["get", "isChosen"], 1, 0],
+  };
+  const found = [
+    {
+      id: "view-plan-casing",
+      type: "line",
+      source: ROUTE,
+      layout: round,
+      paint: { "line-color": casing, "line-width": 4.5 },
+    },
+    {
+      id: "view-plan-line",
+      type: "line",
+      source: ROUTE,
+      layout: round,
+      paint: { "line-color": ink, "line-width": 1.6 },
+    },
+    { id: "view-plan-photos", type: "symbol", source: PHOTOS, layout: cone },
+  ];
+  return /** @type {LayerSpecification[]} */ (found);
+}
+
+/** @param {ViewPlan} plan */
+const routeOf = ({ route }) => [
+  {
+    type: "Feature",
+    properties: {},
+    geometry: { type: "LineString", coordinates: route.map((place) => place.slice(0, 2)) },
+  },
+];
+
+/** @param {ViewPlan} plan @param {number | null} chosen */
+export const photosOf = ({ photos }, chosen) =>
+  photos.map(({ position, yaw_deg }, number) => ({
+    type: "Feature",
+    properties: { number, yaw_deg, isChosen: number === chosen },
+    geometry: { type: "Point", coordinates: position },
+  }));
+
+/** @param {MapLibreMap} map */
+export function createViewPlanLayer(map) {
+  function add() {
+    addSources(map, [ROUTE, PHOTOS]);
+    for (const layer of layers()) map.addLayer(layer);
+  }
+
+  /** @param {ViewPlan} plan */
+  function fit({ route }) {
+    const [longitudes, latitudes] = [0, 1].map((axis) => route.map((place) => place[axis]));
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    map.fitBounds(
+      [
+        [Math.min(...longitudes), Math.min(...latitudes)],
+        [Math.max(...longitudes), Math.max(...latitudes)],
+      ],
+      { padding: PADDING_PX, maxZoom: NEAREST_ZOOM, duration: calm ? 0 : SETTLED_MS },
+    );
+  }
+
+  return {
+    /** Shows a plan, or none. @param {ViewPlan | null} plan @param {{ isNew?: boolean }} [how] isNew: the map moves there */
+    show(plan, { isNew = false } = {}) {
+      if (!map.getSource(ROUTE)) {
+        if (!plan) return;
+        add();
+      }
+      setFeatures(map, ROUTE, plan?.photos.length ? routeOf(plan) : []);
+      setFeatures(map, PHOTOS, plan ? photosOf(plan, null) : []);
+      if (isNew && plan?.photos.length) fit(plan);
+    },
+    /** Highlights a photo, or none. @param {ViewPlan} plan @param {number | null} number */
+    choose(plan, number) {
+      setFeatures(map, PHOTOS, photosOf(plan, number));
+    },
+    recolour() {
+      if (map.getSource(ROUTE)) for (const layer of layers()) setPaint(map, layer);
+    },
+  };
+}

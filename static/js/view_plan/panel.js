@@ -1,0 +1,213 @@
+/** The panel "Plan photos" of a tower: camera, ground sample distance and least height; the plan is made anew with each change. */
+
+import { ApiError, isAbort, post } from "../api.js";
+import { gsdText } from "../cameras/words.js";
+import { h, icon, setChildren } from "../dom.js";
+import { numberField } from "../page/fields.js";
+import { announce } from "../page/toast.js";
+import { t, tn } from "../text.js";
+import { SHORT_UNIT } from "../units.js";
+import { readCameras } from "./cameras.js";
+import { resultOf } from "./result.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { ViewPlan } from "../api_types.d.ts" */
+/** @import { createViewPlanLayer } from "./layer.js" */
+
+const [MIN_GSD_MM, MAX_GSD_MM, GSD_STEP_MM] = [0.5, 10, 0.1];
+const [MIN_HEIGHT_M, MAX_HEIGHT_M] = [2, 60];
+const SETTLED_MS = 300;
+/** What was asked last is asked first of the next tower. */
+const asked = { camera: "", gsd_mm: 2, min_height_m: 4 };
+
+/** @param {number} height_m @param {(figure: number) => number} round inwards */
+const heightBound = (height_m, round) => round((height_m / SHORT_UNIT.metres) * 10) / 10;
+
+function gsdField() {
+  const field = numberField("gsd_mm", t("GSD"), asked.gsd_mm, {
+    unit: "mm",
+    min: MIN_GSD_MM,
+    max: MAX_GSD_MM,
+    required: true,
+    hint: t("Ground sample distance: what one pixel shows at most."),
+  });
+  const slider = h("input", {
+    type: "range",
+    min: MIN_GSD_MM,
+    max: MAX_GSD_MM,
+    step: GSD_STEP_MM,
+    value: `${asked.gsd_mm}`,
+    "aria-label": t("GSD in millimetres"),
+    "aria-valuetext": gsdText(asked.gsd_mm),
+  });
+  slider.addEventListener("input", () => {
+    field.input.value = slider.value;
+    field.notify("");
+    slider.setAttribute("aria-valuetext", gsdText(slider.valueAsNumber));
+  });
+  field.input.addEventListener("input", () => {
+    slider.value = field.input.value;
+  });
+  field.input.after(slider);
+  return field;
+}
+
+function heightField() {
+  return numberField("min_height_m", t("Least height above ground"), asked.min_height_m, {
+    unit: SHORT_UNIT.unit,
+    factor: SHORT_UNIT.metres,
+    digits: 1,
+    min: heightBound(MIN_HEIGHT_M, Math.ceil),
+    max: heightBound(MAX_HEIGHT_M, Math.floor),
+    required: true,
+  });
+}
+
+export class ViewPlanPanel {
+  #asset;
+  #on;
+  #reading = new AbortController();
+  #planning = new AbortController();
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #timer;
+  #isFirst = true;
+  /** @type {Awaited<ReturnType<typeof readCameras>>["requests"]} */
+  #requests = new Map();
+  #camera = h("select", { class: "input", id: "view-plan-camera" });
+  #gsd = gsdField();
+  #height = heightField();
+  #state = h("p", { class: "caption", role: "status" });
+  #result = h("div", { class: "view-plan-result" });
+  #form = h(
+    "form",
+    {},
+    h("div", { class: "field" }, h("label", { for: this.#camera.id }, t("Camera")), this.#camera),
+    this.#gsd.element,
+    this.#height.element,
+  );
+  title = h("h3", { tabindex: -1 }, icon("camera", "small"), t("Plan photos"));
+  element = h(
+    "section",
+    { class: "view-plan", "aria-label": t("Plan photos") },
+    h(
+      "div",
+      { class: "view-plan-head" },
+      this.title,
+      h(
+        "button",
+        { type: "button", class: "icon-button", "aria-label": t("Close"), onclick: () => this.close() },
+        icon("x"),
+      ),
+    ),
+    this.#form,
+    this.#state,
+    this.#result,
+    h("p", { class: "quiet-text" }, t("Preview: not part of a mission yet.")),
+  );
+
+  /**
+   * @param {number} asset id of the tower
+   * @param {{ layer: ReturnType<typeof createViewPlanLayer>, closed: () => void }} on
+   */
+  constructor(asset, on) {
+    this.#asset = asset;
+    this.#on = on;
+    this.#form.addEventListener("submit", (event) => event.preventDefault());
+    this.#form.addEventListener("change", () => {
+      clearTimeout(this.#timer);
+      this.#timer = setTimeout(() => this.#plan(), SETTLED_MS);
+    });
+    this.element.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") return;
+      event.stopPropagation();
+      this.close();
+    });
+    void this.#start();
+  }
+
+  /** Whatever is being read or planned is abandoned. */
+  close() {
+    this.#reading.abort();
+    this.#planning.abort();
+    clearTimeout(this.#timer);
+    this.#on.layer.show(null);
+    this.element.remove();
+    this.#on.closed();
+  }
+
+  async #start() {
+    this.#wait(t("Reading cameras…"));
+    try {
+      const { options, requests } = await readCameras(this.#reading.signal);
+      this.#requests = requests;
+      setChildren(this.#camera, options);
+      if (requests.has(asked.camera)) this.#camera.value = asked.camera;
+      await this.#plan();
+    } catch (error) {
+      this.#failed(error, () => this.#start());
+    }
+  }
+
+  async #plan() {
+    this.#planning.abort();
+    const chosen = this.#requests.get(this.#camera.value);
+    if (!chosen || !this.#form.checkValidity()) return;
+    this.#planning = new AbortController();
+    Object.assign(asked, { camera: this.#camera.value, gsd_mm: this.#gsd.read(), min_height_m: this.#height.read() });
+    this.#wait(t("Planning photos…"));
+    const { gsd_mm, min_height_m } = asked;
+    const body = { asset: this.#asset, ...chosen, gsd_mm, min_height_m };
+    const { signal } = this.#planning;
+    try {
+      const { data } = /** @type {Answer<ViewPlan>} */ (await post("/view-plans", body, { signal }));
+      this.#show(data);
+    } catch (error) {
+      this.#failed(error, () => this.#plan());
+    }
+  }
+
+  /** The plan before stays in grey. @param {string} words */
+  #wait(words) {
+    this.#state.textContent = words;
+    this.#result.setAttribute("aria-busy", "true");
+    if (!this.#result.querySelector("table"))
+      setChildren(this.#result, h("div", { class: "skeleton" }), h("div", { class: "skeleton" }));
+  }
+
+  #waited() {
+    this.#state.textContent = "";
+    this.#result.removeAttribute("aria-busy");
+  }
+
+  /** @param {ViewPlan} plan */
+  #show(plan) {
+    this.#waited();
+    const isOpen = this.#result.querySelector("details")?.open ?? false;
+    setChildren(
+      this.#result,
+      resultOf(plan, (number) => this.#on.layer.choose(plan, number)),
+    );
+    this.#result.querySelector("details")?.toggleAttribute("open", isOpen);
+    this.#on.layer.show(plan, { isNew: this.#isFirst });
+    this.#isFirst = false;
+    announce(tn(plan.photos.length, "{count} photo planned", "{count} photos planned"));
+  }
+
+  /** @param {unknown} error @param {() => unknown} again */
+  #failed(error, again) {
+    if (isAbort(error)) return;
+    if (!(error instanceof ApiError)) throw error;
+    this.#waited();
+    this.#on.layer.show(null);
+    const retry = h("button", { type: "button", class: "text-button", onclick: again }, t("Try again"));
+    setChildren(
+      this.#result,
+      h(
+        "div",
+        { class: "notice critical", role: "alert" },
+        icon("circle-alert"),
+        h("p", {}, h("strong", {}, t("No photos planned.")), ` ${error.message} `, error.isAway && retry),
+      ),
+    );
+  }
+}

@@ -1,0 +1,124 @@
+/** A plan of photos in words: coverage by kind of component, the model's assumptions, and why nothing can be shown. */
+
+import { gsdAt_mm, gsdText, standoff_m } from "../cameras/words.js";
+import { t } from "../text.js";
+import { exactHeightText, percentText, voltageText } from "../units.js";
+
+/** @import { ComponentCoverage, TowerModel, ViewPlan } from "../api_types.d.ts" */
+
+/** @typedef {NonNullable<ComponentCoverage["limit"]>} Limit */
+/**
+ * Coverage of all components of one kind. ofReachable and unreachable: shares, 0 to 1; limit: what limits most of the unreachable part.
+ *
+ * @typedef {object} KindCoverage
+ * @property {string} kind
+ * @property {number | null} ofReachable null where nothing can be shown
+ * @property {number} unreachable
+ * @property {number | null} gsd_mm
+ * @property {Limit | null} limit
+ */
+
+const NEGLIGIBLE = 0.005; // a share that rounds to 0 %
+
+/** @type {Record<string, string>} */
+export const COMPONENTS = {
+  foundation: t("Foundations"),
+  plate: t("Number plate"),
+  body: t("Body"),
+  head: t("Head"),
+  crossarm: t("Crossarms"),
+  string: t("Insulator strings"),
+  clamp: t("Clamps"),
+  earth_wire_peak: t("Earth-wire peaks"),
+  guy: t("Guys"),
+};
+
+/** @type {Record<Limit, string>} */
+export const LIMITS = {
+  hidden: t("hidden by the tower itself"),
+  height: t("only from below the least height"),
+  gimbal: t("outside the gimbal's range"),
+  distance: t("too far from outside the clearance"),
+};
+
+/** @type {Record<string, string>} */
+const FORMS = {
+  lattice: t("lattice tower"),
+  tubular: t("tubular tower"),
+  wooden: t("wooden pole"),
+  "h-frame": t("H-frame"),
+  portal: t("portal"),
+  guyed: t("guyed tower"),
+  stake: t("bend without a mapped support"),
+};
+
+/** "Model: lattice tower, 50 m (assumed), 380 kV, suspension." @param {TowerModel} model */
+export function modelText({ form, height_m, height_source: source, voltage_v, is_anchor: isAnchor }) {
+  const height = exactHeightText(height_m);
+  const heights = {
+    tag: height,
+    line: t("{height} (from its line)", { height }),
+    assumed: t("{height} (assumed)", { height }),
+  };
+  const facts = [
+    FORMS[form] ?? form,
+    heights[source],
+    voltage_v ? voltageText(voltage_v / 1000) : t("voltage unknown"),
+    isAnchor ? t("tension") : t("suspension"),
+  ];
+  return t("Model: {facts}.", { facts: facts.join(", ") });
+}
+
+/** The limit of most of the area that cannot be shown. @param {readonly ComponentCoverage[]} rows @returns {Limit | null} */
+export function mainLimit(rows) {
+  /** @type {Map<Limit, number>} */
+  const areas = new Map();
+  for (const { limit, area_m2, reachable } of rows)
+    if (limit) areas.set(limit, (areas.get(limit) ?? 0) + area_m2 * (1 - reachable));
+  return [...areas].sort(([, a], [, b]) => b - a)[0]?.[0] ?? null;
+}
+
+/** By kind, in the order in which kinds first come. @param {readonly ComponentCoverage[]} rows @returns {KindCoverage[]} */
+export function byKind(rows) {
+  return [...new Set(rows.map(({ component }) => component))].map((kind) => {
+    const own = rows.filter(({ component }) => component === kind);
+    /** @param {(row: ComponentCoverage) => number} share */
+    const area_m2 = (share) => own.reduce((sum, row) => sum + row.area_m2 * share(row), 0);
+    const reachable_m2 = area_m2(({ reachable }) => reachable);
+    const gsds_mm = own.flatMap(({ gsd_mm }) => (gsd_mm === null ? [] : [gsd_mm]));
+    return {
+      kind,
+      ofReachable: reachable_m2 > 0 ? Math.min(1, area_m2(({ shown }) => shown) / reachable_m2) : null,
+      unreachable: 1 - reachable_m2 / area_m2(() => 1),
+      gsd_mm: gsds_mm.length ? Math.max(...gsds_mm) : null,
+      limit: mainLimit(own),
+    };
+  });
+}
+
+/** "12 % hidden by the tower itself"; "" where all can be shown. @param {KindCoverage} row */
+export const restText = ({ unreachable, limit }) =>
+  unreachable < NEGLIGIBLE ? "" : `${shareText(unreachable)}${limit ? ` ${LIMITS[limit]}` : ""}`;
+
+/** Rounded down: less than all is not 100 %. @param {number} share */
+export const shareText = (share) => percentText(Math.floor(share * 100 + 1e-9));
+
+/** Why a plan without photos shows nothing, and what to change. @param {ViewPlan} plan */
+export function nothingText({ camera, gsd_mm, clearance_m, coverage }) {
+  const clearance = exactHeightText(clearance_m);
+  const limit = mainLimit(coverage.components);
+  if (limit === "distance" && standoff_m(camera, gsd_mm) < clearance_m)
+    return t(
+      "This camera shows {gsd} at the clearance of {clearance} at best. Choose a longer lens or a coarser GSD.",
+      { gsd: gsdText(gsdAt_mm(camera, clearance_m)), clearance },
+    );
+  const focus_m = camera.nearest_focus_m ?? 0;
+  if (standoff_m(camera, gsd_mm) <= focus_m)
+    return t("This camera focuses from {distance} on and shows {gsd} there. Choose a coarser GSD.", {
+      distance: exactHeightText(focus_m),
+      gsd: gsdText(gsdAt_mm(camera, focus_m)),
+    });
+  return limit
+    ? t("Most of the tower: {reason}.", { reason: LIMITS[limit] })
+    : t("Choose another camera or a coarser GSD.");
+}
