@@ -18,6 +18,7 @@ function layers() {
   const [casing, ink] = [readToken("--map-casing"), readToken("--accent")];
   const cone = {
     "icon-image": ["case", ["get", "isChosen"], "photo-chosen", "photo"],
+    "icon-size": ["case", ["get", "isChosen"], 1.5, 1],
     "icon-rotate": ["get", "yaw_deg"],
     "icon-rotation-alignment": "map",
     "icon-allow-overlap": true,

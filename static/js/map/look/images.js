@@ -70,7 +70,7 @@ function photo(palette, isChosen) {
   pen.lineWidth = 1.5;
   pen.lineJoin = "round";
   pen.fillStyle = isChosen ? palette.ink : palette.raised;
-  pen.strokeStyle = isChosen ? palette.casing : palette.ink;
+  pen.strokeStyle = palette.ink;
   pen.beginPath();
   pen.moveTo(14, 16);
   pen.lineTo(8, 3);
