@@ -140,7 +140,7 @@ def test_changes_of_the_fleet_do_not_reach_what_was_approved(here: World, person
     uav_type = UavType.objects.create(name="Quad", cruise_speed_mps=12.0, range_unlimited=True)
     (tern,) = fleet(uav_type=uav_type)
     _mission, approval = approved(person, [tern], here.towers[:2])
-    UavType.objects.update(cruise_speed_mps=3.0, max_range_m=10.0)
+    UavType.objects.update(cruise_speed_mps=3.0, max_range_m=10.0, range_unlimited=False)
     Uav.objects.update(name="Other", cruise_speed_mps=2.0, location=worlds.ground.Point(0, 0, srid=4326))
     stored = Approval.objects.get(pk=approval.pk)
     assert stored.document == approval.document

@@ -81,6 +81,7 @@ const boxAround = (longitude, latitude) => [
 export async function townsFound(text, most) {
   return matching(await placesKnown(), text, most).map((place) => ({
     icon: "map-pin",
+    isTown: true,
     label: nameIn(place, locale),
     detail: countryName(place[4]),
     box: boxAround(place[2] / UNITS_PER_DEG, place[3] / UNITS_PER_DEG),

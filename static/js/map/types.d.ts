@@ -172,6 +172,8 @@ export interface ClickHandlers {
 /** A place that a search found: it is gone to by position and zoom, or by its box. */
 export interface FoundPlace {
   icon: string;
+  /** one of the whole world, which comes after what is on the map */
+  isTown?: boolean;
   label: string;
   detail: string;
   position?: number[];

@@ -4,6 +4,7 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
+from django.db.models import F
 
 from missions.models import Mission, UavType
 from simulation.models import Rehearsal, RehearsalRule
@@ -132,7 +133,7 @@ def test_the_list_marks_a_mission_whose_present_plan_failed_its_rehearsal(missio
     mission.mission_uavs.update(performance={"battery_wh": 11.1})
     assert rehearsed(mission, person, "calm").level == "fail"
     assert is_marked()
-    Mission.objects.filter(pk=mission.pk).update(departs_at="2031-05-01T10:00:00Z")  # another plan
+    Mission.objects.filter(pk=mission.pk).update(departs_at="2031-05-01T10:00:00Z", revision=F("revision") + 1)  # another plan
     assert not is_marked()
 
 

@@ -198,8 +198,9 @@ class Finder {
       const { data } = /** @type {Answer<AssetCollection>} */ (answer);
       const flyable = canPlan ? await countFlyable(asked, data, signal) : 0;
       const results = [
-        ...places.map((place) => this.#placeResult(place)),
+        ...places.filter(({ isTown }) => !isTown).map((place) => this.#placeResult(place)),
         ...toldApart(data.features.map((feature) => this.#assetResult(feature))),
+        ...places.filter(({ isTown }) => isTown).map((place) => this.#placeResult(place)),
       ];
       this.#isBehind = false;
       this.#draw(results, results.length ? headOf(asked, data.total ?? 0) : this.#emptyWords(text), flyable);
