@@ -226,6 +226,7 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_SCHEMA_CLASS": "workspace.api.schema.SpanwiseSchema",
     "DEFAULT_THROTTLE_RATES": {
         "plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second"),
+        "view-plans": os.environ.get("SPANWISE_VIEW_PLAN_RATE", "20/minute"),
         "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
         "tiles": os.environ.get("SPANWISE_TILE_RATE", "3000/minute"),
         "scene": os.environ.get("SPANWISE_SCENE_RATE", "60/minute"),
@@ -344,6 +345,7 @@ FLOWN_HEIGHTS = FlownHeights(
 CLEARANCE_RULES = ClearanceRules(
     floor_m=number("SPANWISE_WIRE_CLEARANCE_M", ClearanceRules.floor_m),
     position_sd_m=number("SPANWISE_POSITION_SD_M", ClearanceRules.position_sd_m),
+    map_error_m=number("SPANWISE_MAP_ERROR_M", ClearanceRules.map_error_m),
 )
 SEPARATION_RULES = SeparationRules(
     lateral_m=number("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),

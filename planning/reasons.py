@@ -28,6 +28,7 @@ SENTENCES = register_sentences(
         # what is wrong with a camera
         "camera_not_positive": gettext_noop("Must be greater than 0."),
         "camera_focal_lengths": gettext_noop("State at least one focal length in mm; several in ascending order."),
+        "camera_field_of_view": gettext_noop("The angle of view would not lie between %(min)s and %(max)s°. State the real focal length."),
         "camera_gimbal": gettext_noop("The lowest angle must not be above the highest; both lie between -180 and 180."),
         "camera_offset": gettext_noop("Must be numbers."),
         "camera_pixels_not_square": gettext_noop("With this sensor pixels would not be square. Check its size and the numbers of pixels."),

@@ -1,28 +1,41 @@
 """A tower with its wires, neighbours and terrain, for the planning of photos."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from django.conf import settings
+from django.contrib.gis.db.models.functions import AsWKB
 
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.models import Asset
+from inspection.models import Asset, AssetKind
+from inspection.network.inspection_graph import NodeKind
+from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, UNTAGGED_HEIGHT_M
 from inspection.scene.overhead import Overhead
+from inspection.selectors.assets import Box, area_of
 from inspection.selectors.scene import drawn_as_tagged, overhead_in
 from inspection.selectors.terrain import ground_heights_m, has_terrain
-from planning.views.keep_out import no_floor
-from planning.views.site import HungSpan, StandingSupport, TowerSite, floor_over, tower_site
+from planning.views.ground_band import GroundBand
+from planning.views.keep_out import Obstacle
+from planning.views.site import StandingSupport, TowerSite, tower_site
 from planning.views.solids import FloatArray
 
-AROUND_M = 160.0  # of the tower: supports and wires that a detail inspection may come near
+AROUND_M = 200.0  # of the tower: supports, wires and other assets that a detail inspection may come near
+WIRES_BESIDE_M = 15.0  # of lines without drawn spans: from their axis to the outermost wire, swing included
+TRACK_BESIDE_M = 6.0  # of railways: half of their width with masts
+OTHER_TOP_M: dict[str, float] = {
+    AssetKind.RAILWAY: UNTAGGED_HEIGHT_M[NodeKind.RAILWAY],
+    AssetKind.BRIDGE: UNTAGGED_HEIGHT_M[NodeKind.BRIDGE],
+}
 
 
 @dataclass(frozen=True, eq=False)
 class TowerOnMap:
     """The site in the frame around the tower's foot.
 
-    base_amsl_m: of the ground there, None without terrain data. ground_m: the ground over that at places (n, 2) [m].
+    base_amsl_m: of the ground there, None without terrain data; then heights count from the foot, and the ground as level. ground_m: the
+    ground over that at places (n, 2) [m], NaN where it is not known.
     """
 
     site: TowerSite
@@ -31,43 +44,54 @@ class TowerOnMap:
     ground_m: Callable[[FloatArray], FloatArray]
 
 
-def tower_on_map(asset: Asset, min_height_m: float) -> TowerOnMap | None:
+def tower_on_map(asset: Asset, min_height_m: float, lens_offset_m: float = 0.0) -> TowerOnMap | None:
     """Return the surroundings of a tower; None where it is no support of the network.
 
-    min_height_m: above the ground, which is kept everywhere.
+    min_height_m: above the ground, which is kept everywhere, as is the greatest height of the flight rules.
     """
     frame = LocalFrame.around(*asset.centre.coords)
     corners = frame.to_degrees(np.array([[-AROUND_M, -AROUND_M], [AROUND_M, AROUND_M]]))
-    found = overhead_in((*corners[0].tolist(), *corners[1].tolist()))
+    box: Box = (*corners[0].tolist(), *corners[1].tolist())
+    found = overhead_in(box)
     own = np.flatnonzero(found.support == asset.pk)
     if not len(own):
         return None
     frame = LocalFrame.around(*found.position[own[0]].tolist())
     base_m = float(ground_heights_m(found.position[own[:1]])[0]) if has_terrain() else np.nan
+    is_known = not np.isnan(base_m)
+    max_height_m = settings.FLIGHT_RULES.max_agl_m
 
     def ground_m(places: FloatArray) -> FloatArray:
-        heights_m: FloatArray = np.nan_to_num(ground_heights_m(frame.to_degrees(places)) - base_m)
-        return heights_m
+        return ground_heights_m(frame.to_degrees(places)) - base_m if is_known else np.full(len(places), np.nan)
 
-    if np.isnan(base_m):
-        return TowerOnMap(_site(found, int(own[0]), frame, _level, no_floor), frame, None, _level)
-    floor = floor_over(ground_m, min_height_m)
-    return TowerOnMap(_site(found, int(own[0]), frame, ground_m, floor), frame, base_m, ground_m)
+    band = GroundBand.over(ground_m, min_height_m, max_height_m) if is_known else GroundBand.level(min_height_m, max_height_m)
+    site = _site(found, int(own[0]), frame, np.nan_to_num(ground_m(frame.to_metres(found.position))), band, box, lens_offset_m)
+    return TowerOnMap(site, frame, base_m if is_known else None, ground_m)
 
 
-def _level(places: FloatArray) -> FloatArray:
-    return np.zeros(len(places))
-
-
-def _site(
-    found: Overhead, own: int, frame: LocalFrame, ground_m: Callable[[FloatArray], FloatArray], floor: Callable[[FloatArray], FloatArray]
-) -> TowerSite:
+def _site(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray, band: GroundBand, box: Box, lens_offset_m: float) -> TowerSite:
     drawn, hung, _ = drawn_as_tagged(found)
     places = frame.to_metres(found.position)
-    foot_m = ground_m(places)
     order = [own, *(place for place in range(len(drawn)) if place != own)]
     number = {place: count for count, place in enumerate(order)}
     supports = [StandingSupport(drawn[place], float(places[place, 0]), float(places[place, 1]), float(foot_m[place])) for place in order]
-    spans = [HungSpan(number[span.start], number[span.end], span.sag_m) for span in hung]
-    turned = [HungSpan(span.end, span.start, span.sag_m) for span in spans]  # wires are looked at near both of their ends
-    return tower_site(supports, [*spans, *turned], settings.CLEARANCE_RULES, floor)
+    spans = [(number[span.start], number[span.end]) for span in hung]
+    others = list(_others(box, frame, float(band.low_m.max())))
+    return tower_site(supports, spans, settings.CLEARANCE_RULES, band, others, lens_offset_m)
+
+
+def _others(box: Box, frame: LocalFrame, highest_ground_m: float) -> Iterator[Obstacle]:
+    """Railways, bridges, and lines that are not in use, as obstacles on the highest ground around."""
+    rows = Asset.objects.filter(vanished_at=None, geometry__intersects=area_of(box)).exclude(kind=AssetKind.TOWER)
+    for row in rows.annotate(wkb=AsWKB("geometry")).only("kind", "height_m", "max_voltage_v", "is_flyable"):
+        if row.kind == AssetKind.LINE and row.is_flyable:
+            continue
+        shape = shapely.intersection(shapely.force_2d(shapely.from_wkb(bytes(row.wkb))), shapely.box(*box))
+        top_m = highest_ground_m + (row.height_m or OTHER_TOP_M.get(row.kind, HIGHEST_VOLTAGE_HEIGHT_M))
+        beside_m = WIRES_BESIDE_M if row.kind == AssetKind.LINE else TRACK_BESIDE_M if row.kind == AssetKind.RAILWAY else 0.0
+        for part in shapely.get_parts(shape):
+            corners = frame.to_metres(shapely.get_coordinates(part))
+            if row.kind == AssetKind.BRIDGE and len(corners):
+                yield Obstacle(corners, beside_m, top_m)
+            else:
+                yield from (Obstacle(corners[place : place + 2], beside_m, top_m) for place in range(len(corners) - 1))

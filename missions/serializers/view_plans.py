@@ -42,8 +42,8 @@ class CameraSerializer(KnownFieldsSerializer):
     )
     gimbal_yaw_max_deg = FiniteFloatField(min_value=-360.0, max_value=360.0, allow_null=True, required=False)
     offset_m = serializers.ListField(
-        child=FiniteFloatField(min_value=-10.0, max_value=10.0), min_length=3, max_length=3, required=False,
-        help_text="of the lens from the antenna: forward, right, up",
+        child=FiniteFloatField(min_value=-1.0, max_value=1.0), min_length=3, max_length=3, required=False,
+        help_text="of the lens from the antenna: forward, right, up; poses are the lens's, and the clearance is as much more",
     )  # fmt: skip
     is_thermal = serializers.BooleanField(required=False)
 
@@ -109,7 +109,7 @@ class TowerModelSerializer(serializers.Serializer):
 
 class PlannedPhotoSerializer(serializers.Serializer):
     position = serializers.ListField(child=serializers.FloatField(), help_text="lon, lat")
-    height_agl_m = serializers.FloatField(help_text="above the ground under the UAV")
+    height_agl_m = serializers.FloatField(allow_null=True, help_text="above the ground under the UAV; null without terrain data there")
     height_m = serializers.FloatField(help_text="above the ground at the tower")
     yaw_deg = serializers.FloatField(help_text="from true north, clockwise")
     pitch_deg = serializers.FloatField(help_text="0 is the horizon, -90 straight down")
@@ -147,9 +147,10 @@ class ViewPlanSerializer(serializers.Serializer):
     focal_length_mm = serializers.FloatField(help_text="with which the photos are taken")
     farthest_m = serializers.FloatField(help_text="distance up to which they are fine enough")
     clearance_m = serializers.FloatField(help_text="least distance from wires and supports")
+    has_terrain = serializers.BooleanField(help_text="without, the ground counts as level with the tower's foot")
     model = TowerModelSerializer()
     photos = PlannedPhotoSerializer(many=True, help_text="in the order in which they are taken")
-    photos_bound = serializers.IntegerField(help_text="no choice among the candidates shows as much with fewer photos")
+    photos_bound = serializers.IntegerField(help_text="no choice of fewer photos among the candidates shows enough")
     route = serializers.ListField(
         child=serializers.ListField(child=serializers.FloatField()),
         help_text="lon, lat, and metres above the ground at the tower; from above the tower and back to there",

@@ -1,9 +1,10 @@
 """Photos of a tower, planned at a user's request, with the flight through them and the zones that it meets."""
 
+import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from django.conf import settings
 
 from inspection.models import Asset
 from inspection.selectors.zone_table import zone_table
@@ -15,10 +16,12 @@ from planning.views.camera import Camera, camera_to_json
 from planning.views.coverage import ComponentCoverage
 from planning.views.detail_plan import DetailPlan, DetailSpeeds, detail_plan
 from planning.views.limits import DetailRules
+from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO
 from workspace.jobs.planning_lock import hold_planning_lock
 
 MM_PER_M = 1_000.0
+ZONE_STEP_M = 5.0  # between places of the flight whose heights above ground are looked at
 
 
 class NotATower(Exception):
@@ -26,13 +29,15 @@ class NotATower(Exception):
 
 
 def plan_views(*, asset: Asset, camera: Camera, asked_gsd_m: float, min_height_m: float) -> dict[str, Any]:
-    """Return the plan in the shape of the API. Raises NotATower, or NoWay where the flight would be above the greatest height."""
-    found = tower_on_map(asset, min_height_m)
+    """Return the plan in the shape of the API.
+
+    Raises NotATower, TooManyPhotos, or NoWay where no flight keeps out of what stands there below the greatest height.
+    """
+    found = tower_on_map(asset, min_height_m, float(np.linalg.norm(camera.offset_m)))
     if found is None:
         raise NotATower
-    rules = DetailRules(asked_gsd_m, min_height_m, settings.FLIGHT_RULES.max_agl_m)
     with hold_planning_lock():
-        plan = detail_plan(found.site, camera, rules, DetailSpeeds())
+        plan = detail_plan(found.site, camera, DetailRules(asked_gsd_m), DetailSpeeds())
     return _plan_json(asset, camera, asked_gsd_m, found, plan)
 
 
@@ -50,14 +55,18 @@ def _plan_json(asset: Asset, camera: Camera, asked_gsd_m: float, found: TowerOnM
         "focal_length_mm": plan.lens.focal_mm,
         "farthest_m": plan.lens.farthest_m,
         "clearance_m": found.site.clearance_m,
+        "has_terrain": found.base_amsl_m is not None,
         "model": {
             "form": tower.form, "height_m": tower.likely_m, "height_source": tower.height_source, "voltage_v": tower.voltage_v,
             "is_anchor": tower.is_anchor, "bearing_deg": tower.bearing_deg,
         },
         "photos": [
             {
-                "position": positions[place].tolist(), "height_agl_m": float(agl_m[place]), "height_m": float(flight.position[place, 2]),
-                "yaw_deg": float(plan.poses.yaw_deg[number]), "pitch_deg": float(plan.poses.pitch_deg[number]),
+                "position": positions[place].tolist(),
+                "height_agl_m": None if np.isnan(agl_m[place]) else float(agl_m[place]),
+                "height_m": float(flight.position[place, 2]),
+                "yaw_deg": float(plan.poses.yaw_deg[number]),
+                "pitch_deg": float(plan.poses.pitch_deg[number]),
             }
             for number, place in enumerate(photo_at.tolist())
         ],
@@ -71,7 +80,7 @@ def _plan_json(asset: Asset, camera: Camera, asked_gsd_m: float, found: TowerOnM
             "shown_of_reachable": coverage.share,
             "components": [_component_json(row) for row in plan.components],
         },
-        "zones": _zones(found, positions, agl_m, flight.position[:, 2]),
+        "zones": _zones(found, flight.position),
     }  # fmt: skip
 
 
@@ -82,8 +91,20 @@ def _component_json(row: ComponentCoverage) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _zones(found: TowerOnMap, positions: Any, agl_m: Any, height_m: Any) -> list[dict[str, Any]]:
-    """The zones that the flight meets at any time, each once."""
-    amsl_m = None if found.base_amsl_m is None else height_m + found.base_amsl_m
-    met = zones_met([FlownRoute(positions, agl_m, amsl_m)], zone_table(), planning_rules().margins)
+def _zones(found: TowerOnMap, position: FloatArray) -> list[dict[str, Any]]:
+    """The zones that the flight meets at any time, each once; unknown heights may be any."""
+    places = _every(ZONE_STEP_M, position)
+    agl_m = places[:, 2] - found.ground_m(places[:, :2])
+    amsl_m = None if found.base_amsl_m is None else places[:, 2] + found.base_amsl_m
+    flown = FlownRoute(found.frame.to_degrees(places[:, :2]), agl_m, amsl_m)
+    met = zones_met([flown], zone_table(), planning_rules().margins)
     return [{"id": key, "name": name} for key, name in dict.fromkeys((zone.zone, zone.name) for zone in met[0])]
+
+
+def _every(step_m: float, position: FloatArray) -> FloatArray:
+    """The flight with places no farther apart than this, (n, 3) [m]."""
+    parts = [position[:1]]
+    for start, end in pairwise(position):
+        count = max(math.ceil(float(np.linalg.norm(end - start)) / step_m), 1)
+        parts.append(start + (end - start) * np.linspace(0.0, 1.0, count + 1)[1:, None])
+    return np.concatenate(parts)

@@ -10,6 +10,7 @@ from inspection.models import Asset
 from missions.serializers.view_plans import CameraCatalogueSerializer, ViewPlanInputSerializer, ViewPlanSerializer, catalogue_json
 from missions.services.view_plans import NotATower, plan_views
 from planning.views.catalogue import catalogue
+from planning.views.detail_views import TooManyPhotos
 from planning.views.view_flight import NoWay
 from workspace.api.errors import ApiProblem
 from workspace.api.renderers import FastJSONRenderer
@@ -32,7 +33,7 @@ class ViewPlans(APIView):
     write_roles = frozenset(Role)
     renderer_classes = [FastJSONRenderer]
     throttle_classes = [ScopedRate]
-    throttle_scope = "plans"
+    throttle_scope = "view-plans"
 
     @extend_schema(
         operation_id="plan_views",
@@ -54,7 +55,10 @@ class ViewPlans(APIView):
         except NotATower as error:
             message = _("Photos are planned of power towers that carry a line.")
             raise ApiProblem(400, "not_a_tower", message, details={"asset": [message]}) from error
+        except TooManyPhotos as error:
+            message = _("It would take too many photos. Choose a coarser ground sample distance, or a camera with more pixels.")
+            raise ApiProblem(400, "too_many_photos", message, details={"gsd_mm": [message]}) from error
         except NoWay as error:
-            message = _("The flight over the wires would be above the greatest height allowed.")
-            raise ApiProblem(409, "above_height_limit", message) from error
+            message = _("No flight keeps clear of wires, ground and the greatest height here.")
+            raise ApiProblem(409, "no_way", message) from error
         return Response(plan)

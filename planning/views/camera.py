@@ -11,6 +11,7 @@ from typing import Any
 from operation.reasons import Reason
 
 DOWN_DEG, UP_DEG = -90.0, 90.0
+MIN_VIEW_DEG, MAX_VIEW_DEG = 0.5, 150.0  # of a picture's sides
 MAX_SQUARE_ERROR = 0.1  # between a pixel's width and height: above that a figure is wrong
 
 
@@ -75,6 +76,8 @@ class Camera:
             faults["offset_m"] = Reason("camera_offset")
         if not faults and abs(self.pixel_width_mm / self.pixel_height_mm - 1.0) > MAX_SQUARE_ERROR:
             faults["pixels_high"] = Reason("camera_pixels_not_square")
+        if not faults and not all(MIN_VIEW_DEG <= own <= MAX_VIEW_DEG for step in steps for own in field_of_view_deg(self, step)):
+            faults["focal_lengths_mm"] = Reason("camera_field_of_view", {"min": MIN_VIEW_DEG, "max": MAX_VIEW_DEG})
         if faults:
             raise InvalidCamera(faults)
 

@@ -1,6 +1,6 @@
 """What photos prove: for each component the share that they show, how fine and at which angle, and why the rest cannot be shown.
 
-Shares nothing with the choice of photos but the rays: any poses can be asked, planned, flown or reported ones.
+Any poses can be asked: planned, flown or reported ones. The choice of photos counts by the same rays and frames, on larger patches.
 """
 
 from dataclasses import dataclass

@@ -14,7 +14,7 @@ from planning.views.view_flight import NO_PHOTO, ViewFlight, view_flight
 from planning.views.visibility import Poses, RayCaster
 
 PROOF_PATCH_M = 1.0
-ENTRY_ABOVE_M = 2.0  # of the keep-out, over the tower
+ENTRY_ABOVE_M = 2.0  # the keep-out over the tower
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class DetailSpeeds:
 
 @dataclass(frozen=True, eq=False)
 class DetailPlan:
-    """Photos in the order flown. bound: no choice of fewer photos shows enough. seconds: from the entry over the tower back to it."""
+    """Photos in the order flown. bound: see DetailViews. seconds: from the entry over the tower back to it."""
 
     poses: Poses
     lens: Lens
@@ -40,17 +40,17 @@ class DetailPlan:
 
 
 def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: DetailSpeeds) -> DetailPlan:
-    """Plan photos of the site's tower. Raises NoWay where the flight over the wires would be above the greatest height."""
+    """Plan photos of the site's tower. Raises TooManyPhotos, or NoWay where the flight over the wires would be too high."""
     views = detail_views(site.solid, site.keep_out, camera, rules)
-    entry = np.array([0.0, 0.0, float(site.keep_out.top_m.max()) + ENTRY_ABOVE_M])
-    flight = view_flight(views.poses, site.keep_out, entry, rules.max_height_m, entry)
+    entry = np.array([0.0, 0.0, site.keep_out.top_at(np.zeros(2)) + ENTRY_ABOVE_M])
+    flight = view_flight(views.poses, site.keep_out, entry, entry)
     order = flight.photo[flight.photo != NO_PHOTO]
     poses = views.poses.only(order)
     renumbered = np.full(len(flight), NO_PHOTO)
     renumbered[flight.photo != NO_PHOTO] = np.arange(len(order))
     patches, caster = patches_of(site.solid, PROOF_PATCH_M), RayCaster([site.solid])
     farthest_m = min(standoff_m(camera, rules.asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
-    limits = limits_of(patches, site.keep_out, caster, camera, rules, farthest_m)
+    limits = limits_of(patches, site.keep_out, caster, camera, farthest_m)
     coverage = coverage_of(poses, views.lens, camera, patches, caster, limits.limit)
     return DetailPlan(
         poses, views.lens, ViewFlight(flight.position, renumbered), coverage, by_component(site.solid, coverage), views.bound,

@@ -23,17 +23,22 @@ ABOVE_M = (0.5, 6.0)  # the top of the keep-out
 DISTANCE_SHARES = (0.0, 0.35, 0.75)  # of the way from the keep-out to the farthest place
 MIN_COSINE = 0.2  # of a pitch, by which steps of yaw are widened
 CUBES_M = (1.5, 0.5)  # sides of cubes with one place each, of those from where patches can be seen that no candidate sees
+MAX_PHOTOS, MAX_CANDIDATES = 200, 30_000
 MUCH = 0.2  # of what the photo shows that shows the most
 REACH_M = 80.0  # from the asset's axis, of candidate positions
 LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
 ENOUGH = 0.99  # of what the longest focal length reaches, for a shorter one to do
 
 
+class TooManyPhotos(ValueError):
+    """More than MAX_PHOTOS would be needed, or more than MAX_CANDIDATES weighed."""
+
+
 @dataclass(frozen=True, eq=False)
 class DetailViews:
     """Poses of photos, the lens they are taken with, what they show (photos, patches), and why other patches cannot be shown.
 
-    bound: no choice among the candidates shows enough with fewer photos.
+    bound: no choice shows enough with fewer photos, among the candidates that were weighed (see _worthwhile).
     """
 
     poses: Poses
@@ -48,14 +53,17 @@ class DetailViews:
 def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailRules) -> DetailViews:
     """Return the fewest photos found that show the solid, which stands at the origin of its frame.
 
-    Heights of the rules count from there; over terrain the keep-out has a floor.
+    Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance.
     """
     height_m = float(solid.box[1][2])
     patches = patches_of(solid, float(np.clip(height_m / PATCHES_HIGH, MIN_PATCH_M, MAX_PATCH_M)))
     caster = RayCaster([solid])
+    picture_m2 = camera.pixels_wide * camera.pixels_high * rules.asked_gsd_m**2
+    if float(patches.area_m2.sum()) > MAX_PHOTOS * picture_m2:
+        raise TooManyPhotos
     farthest_m = min(standoff_m(camera, rules.asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
-    limits = limits_of(patches, keep_out, caster, camera, rules, farthest_m)
-    positions = candidate_positions(solid, keep_out, rules, farthest_m)
+    limits = limits_of(patches, keep_out, caster, camera, farthest_m)
+    positions = candidate_positions(solid, keep_out, farthest_m)
     sight = line_of_sight(positions, patches, caster, farthest_m)
     for cube_m in CUBES_M:
         more = _further_positions(limits, np.asarray(~sight.any(axis=0)), cube_m)
@@ -71,13 +79,16 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
     return DetailViews(photos.only(cover.chosen), lens, patches, shows[cover.chosen], limits, cover.bound, len(photos))
 
 
-def candidate_positions(solid: Solid, keep_out: KeepOut, rules: DetailRules, farthest_m: float) -> FloatArray:
+def candidate_positions(solid: Solid, keep_out: KeepOut, farthest_m: float) -> FloatArray:
     """Places around the asset and above it, outside the keep-out and within the heights; (n, 3) [m]."""
     _, high = solid.box
-    top_m = float(keep_out.top_m.max(initial=float(high[2])))
-    highest_m = min(float(high[2]) + min(0.7 * farthest_m, MAX_ABOVE_M), rules.max_height_m)
-    count = max(math.ceil((highest_m - rules.min_height_m) / max(MIN_LEVELS_M, highest_m / LEVELS)), 1)
-    levels_m = np.linspace(rules.min_height_m, max(highest_m, rules.min_height_m), count + 1)
+    foot = np.zeros(2)
+    lowest_m, limit_m = keep_out.band.limits_between(foot, foot)
+    lowest_m = min(lowest_m, float(keep_out.band.low_m.min()))
+    top_m = max(keep_out.top_at(foot), float(high[2]))
+    highest_m = min(float(high[2]) + min(0.7 * farthest_m, MAX_ABOVE_M), limit_m)
+    count = max(math.ceil((highest_m - lowest_m) / max(MIN_LEVELS_M, highest_m / LEVELS)), 1)
+    levels_m = np.linspace(lowest_m, max(highest_m, lowest_m), count + 1)
     found = []
     for azimuth in np.arange(0.0, 360.0, AZIMUTH_STEP_DEG):
         direction = np.array([math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
@@ -89,8 +100,6 @@ def candidate_positions(solid: Solid, keep_out: KeepOut, rules: DetailRules, far
             found += [(*(direction * (near_m + share * (farthest_m - near_m))), level_m) for share in shares]
     for above_m in ABOVE_M:
         level_m = top_m + above_m
-        if level_m > rules.max_height_m:
-            continue
         for out_m in (0.0, 6.0, 12.0, 20.0):
             count = 1 if out_m == 0.0 else 12
             for turn in np.radians(np.arange(count) * 360.0 / count).tolist():
@@ -110,7 +119,7 @@ def _first_outside_m(direction: FloatArray, level_m: float, keep_out: KeepOut) -
     """How far out from the axis, in a direction, the last column of the keep-out ends at a level; None where none ends near enough."""
     out_m = np.arange(0.0, REACH_M, 0.5)
     points = np.column_stack([out_m[:, None] * direction, np.full(len(out_m), level_m)])
-    inside = np.flatnonzero(keep_out.holds(points))
+    inside = np.flatnonzero(keep_out.in_column(points))
     if not len(inside):
         return BEYOND_M
     last = int(inside[-1])
@@ -166,6 +175,8 @@ def _photos(positions: FloatArray, patches: Patches, sight: BoolArray, camera: C
         whole = np.zeros((int(some.sum()), len(patches)), dtype=bool)
         whole[:, seen] = shown[some]
         places += [number] * len(whole)
+        if len(places) > MAX_CANDIDATES:
+            raise TooManyPhotos
         yaws.append(own_yaw[some])
         pitches.append(own_pitch[some])
         rows.append(whole)

@@ -4,23 +4,20 @@ A UAV passes wires above them or along their outer side, and is never under or b
 """
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from planning.views.solids import FloatArray, Solid
-
-BoolArray = NDArray[np.bool_]
+from planning.views.ground_band import BoolArray, GroundBand
+from planning.views.solids import FloatArray
 
 # EN 50110-1:2013, table A.1: the outer limit of the vicinity zone D_V [m] by nominal voltage [kV].
 VICINITY_M = ((10.0, 1.15), (20.0, 1.22), (30.0, 1.32), (110.0, 2.0), (220.0, 3.0), (380.0, 4.0), (480.0, 6.1), (700.0, 8.4))
 USUAL_KV = 110.0  # where nothing is known of a line, its next class up counts
-SWING_DEG = 30.0  # of a wire in strong wind, to each side
-NEAR_WIRES_M = 120.0  # of a span from its support that is looked at
-FLOOR_STEP_M = 2.0  # between places of a way whose height over the ground is looked at
-PIECE_M = 20.0  # of a span, with the height of its higher end
+SWING_DEG = 30.0  # of wires and strings to each side, in winds in which UAVs fly: own assumption
+SITE_M = 150.0  # around the inspected asset: what of wires and supports is looked at
+PIECE_M = 25.0  # of a span, with the height of its higher end
 DIRECTIONS = 16  # in which a column is bounded
 _ANGLES = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
 NORMALS = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
@@ -30,11 +27,14 @@ NORMALS = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 class ClearanceRules:
     """floor_m: the least distance that an organisation keeps. position_sd_m: of the UAV's position, counted three times.
 
-    gust_mps: by how much a gust carries the UAV off for reaction_s.
+    map_error_m: of supports on the map. uav_radius_m: from the antenna to the tips of the rotors. gust_mps: by how much a gust carries the
+    UAV off for reaction_s.
     """
 
     floor_m: float = 5.0
     position_sd_m: float = 0.5
+    map_error_m: float = 1.5
+    uav_radius_m: float = 0.8
     gust_mps: float = 3.0
     reaction_s: float = 0.7
 
@@ -50,14 +50,15 @@ def vicinity_m(voltage_v: float | None) -> float:
 
 def clearance_m(voltage_v: float | None, rules: ClearanceRules) -> float:
     """The least distance [m] that a UAV keeps from wires and supports of this voltage, without the swing of the wires."""
-    return max(rules.floor_m, vicinity_m(voltage_v) + 3.0 * rules.position_sd_m + rules.gust_mps * rules.reaction_s)
+    errors_m = 3.0 * rules.position_sd_m + rules.map_error_m + rules.uav_radius_m
+    return max(rules.floor_m, vicinity_m(voltage_v) + errors_m + rules.gust_mps * rules.reaction_s)
 
 
 @dataclass(frozen=True)
 class Span:
     """Wires from one support to the next: where both stand (x, y), their outermost wires (left negative, right), and their highest points.
 
-    sag_m: of the lowest wire at its hottest, which with the wind carries the wires to the side.
+    sag_m: of the lowest wire at its hottest; string_m: of the longest string that it hangs from. By both the wind carries them aside.
     """
 
     start: tuple[float, float]
@@ -67,49 +68,53 @@ class Span:
     start_top_m: float
     end_top_m: float
     sag_m: float = 0.0
+    string_m: float = 0.0
 
 
-def no_floor(places: FloatArray) -> FloatArray:
-    """Of a keep-out that allows any height over the ground."""
-    return np.full(len(places), -np.inf)
+@dataclass(frozen=True, eq=False)
+class Obstacle:
+    """Anything that stands there: the column over the convex hull of places (n, 2), wider by half_width_m, up to top_m."""
+
+    places: FloatArray
+    half_width_m: float
+    top_m: float
 
 
 @dataclass(frozen=True, eq=False)
 class KeepOut:
-    """Columns: bound float64 (c, DIRECTIONS), how far each reaches along NORMALS [m]; top_m (c,).
-
-    floor: the least height [m] at places (n, 2), such as the terrain's with what is kept above it.
-    """
+    """Columns: bound float64 (c, DIRECTIONS), how far each reaches along NORMALS [m]; top_m (c,). band: heights over the ground."""
 
     bound: FloatArray
     top_m: FloatArray
-    floor: Callable[[FloatArray], FloatArray] = field(default=no_floor)
+    band: GroundBand
 
     def __len__(self) -> int:
         return len(self.top_m)
 
     def holds(self, points: FloatArray) -> BoolArray:
-        """Whether each point, (n, 3), is in a column."""
+        """Whether each point, (n, 3), is in a column, or at a height that is not allowed over the ground."""
+        return np.asarray(self.in_column(points) | self.band.leaves_out(points))
+
+    def in_column(self, points: FloatArray) -> BoolArray:
         along = points[:, :2] @ NORMALS.T
-        inside = ((along[:, None, :] < self.bound).all(axis=2) & (points[:, None, 2] < self.top_m)).any(axis=1)
-        return np.asarray(inside | (points[:, 2] < self.floor(points[:, :2])))
+        inside = np.zeros(len(points), dtype=bool)
+        for bound, top_m in zip(self.bound, self.top_m.tolist(), strict=True):
+            low = np.flatnonzero(~inside & (points[:, 2] < top_m))
+            inside[low] = (along[low] < bound).all(axis=1)
+        return inside
 
     def meets(self, start: FloatArray, end: FloatArray) -> BoolArray:
-        """Whether the straight way from each start to its end, (n, 3) each, leads through a column."""
-        met = np.zeros(len(start), dtype=bool)
+        """Whether the straight way from each start to its end, (n, 3) each, leads through a column or a height that is not allowed."""
+        met = self.band.left_between(start, end)
         for bound, top_m in zip(self.bound, self.top_m.tolist(), strict=True):
-            np.logical_or(met, _clips(start, end, bound, top_m), out=met)
-        if self.floor is not no_floor:
-            np.logical_or(met, self._is_low(start, end), out=met)
+            near = np.flatnonzero(~met & (np.minimum(start[:, 2], end[:, 2]) < top_m))
+            met[near] = _clips(start[near], end[near], bound, top_m)
         return met
 
-    def _is_low(self, start: FloatArray, end: FloatArray) -> BoolArray:
-        """Whether each way comes below the floor, looked at every FLOOR_STEP_M."""
-        longest_m = float(np.linalg.norm(end - start, axis=1).max(initial=0.0))
-        shares = np.linspace(0.0, 1.0, max(math.ceil(longest_m / FLOOR_STEP_M), 1) + 1)[:, None, None]
-        places = (start + (end - start) * shares).reshape(-1, 3)
-        low = (places[:, 2] < self.floor(places[:, :2])).reshape(len(shares), len(start))
-        return np.asarray(low.any(axis=0))
+    def top_at(self, place: FloatArray) -> float:
+        """The top of the highest column [m] over a place, (2,), -inf where there is none."""
+        over = (NORMALS @ place < self.bound).all(axis=1)
+        return float(self.top_m[over].max(initial=-math.inf))
 
     def top_between(self, start: FloatArray, end: FloatArray) -> float:
         """The top of the highest column [m] that the line between two places crosses on the map, -inf where there is none."""
@@ -121,19 +126,23 @@ class KeepOut:
         return max(crossed, default=-math.inf)
 
 
-def keep_out(
-    solids: Sequence[Solid], spans: Sequence[Span], clearance: float, floor: Callable[[FloatArray], FloatArray] = no_floor
-) -> KeepOut:
-    """Return the columns of supports and of the spans between them, clearance [m] wider and higher than they are."""
-    columns = [_column(solid.triangles.reshape(-1, 3)[:, :2], float(solid.triangles[:, :, 2].max()), clearance) for solid in solids]
+def keep_out(obstacles: Sequence[Obstacle], spans: Sequence[Span], clearance: float, band: GroundBand) -> KeepOut:
+    """Return the columns of what stands within SITE_M and of the wires there, clearance [m] wider and higher than they are."""
+    columns = [_column(own.places, own.half_width_m, own.top_m, clearance) for own in obstacles if _is_near(own.places)]
     for span in spans:
         columns += _span_columns(span, clearance)
     bound = np.array([bound for bound, _ in columns]).reshape(-1, DIRECTIONS)
-    return KeepOut(bound, np.array([top_m for _, top_m in columns]), floor)
+    return KeepOut(bound, np.array([top_m for _, top_m in columns]), band)
 
 
-def _column(places: FloatArray, top_m: float, clearance: float) -> tuple[FloatArray, float]:
-    return (places @ NORMALS.T).max(axis=0) + clearance, top_m + clearance
+def _is_near(places: FloatArray) -> bool:
+    """Whether the box of the places comes within SITE_M."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    return bool((low <= SITE_M).all() and (high >= -SITE_M).all())
+
+
+def _column(places: FloatArray, half_width_m: float, top_m: float, clearance: float) -> tuple[FloatArray, float]:
+    return (places @ NORMALS.T).max(axis=0) + half_width_m + clearance, top_m + clearance
 
 
 def _span_columns(span: Span, clearance: float) -> list[tuple[FloatArray, float]]:
@@ -145,27 +154,22 @@ def _span_columns(span: Span, clearance: float) -> list[tuple[FloatArray, float]
     along = (end - start) / length_m
     right = np.array([along[1], -along[0]])
     columns = []
-    reach_m = min(length_m, NEAR_WIRES_M)
-    cuts_m = np.linspace(0.0, reach_m, math.ceil(reach_m / PIECE_M) + 1)
+    cuts_m = np.linspace(0.0, length_m, math.ceil(length_m / PIECE_M) + 1)
     for low_m, high_m in zip(cuts_m[:-1].tolist(), cuts_m[1:].tolist(), strict=True):
         swings_m = [_swing_m(span, at_m, length_m) for at_m in (low_m, high_m)]
         swing_m = _swing_m(span, length_m / 2.0, length_m) if low_m < length_m / 2.0 < high_m else max(swings_m)
-        places = np.array(
-            [
-                start + along * at_m + right * side_m
-                for at_m in (low_m, high_m)
-                for side_m in (span.left_m - swing_m, span.right_m + swing_m)
-            ]
-        )
+        sides_m = (span.left_m - swing_m, span.right_m + swing_m)
+        places = np.array([start + along * at_m + right * side_m for at_m in (low_m, high_m) for side_m in sides_m])
         tops_m = [span.start_top_m + (span.end_top_m - span.start_top_m) * at_m / length_m for at_m in (low_m, high_m)]
-        columns.append(_column(places, max(tops_m), clearance))
+        if _is_near(places):
+            columns.append(_column(places, 0.0, max(tops_m), clearance))
     return columns
 
 
 def _swing_m(span: Span, at_m: float, length_m: float) -> float:
     """By how much the lowest point of the wires' arc here moves to the side."""
     share = at_m / length_m
-    return 4.0 * span.sag_m * share * (1.0 - share) * math.sin(math.radians(SWING_DEG))
+    return (4.0 * span.sag_m * share * (1.0 - share) + span.string_m) * math.sin(math.radians(SWING_DEG))
 
 
 def _clips(start: FloatArray, end: FloatArray, bound: FloatArray, top_m: float) -> BoolArray:

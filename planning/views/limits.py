@@ -31,14 +31,9 @@ LIMITS = tuple(Limit)
 
 @dataclass(frozen=True)
 class DetailRules:
-    """asked_gsd_m: what a pixel may show at most. min_height_m and max_height_m: of the UAV above the ground at the asset.
-
-    share: of the area that can be photographed, in all and for each kind of component.
-    """
+    """asked_gsd_m: what a pixel may show at most. share: of the area that can be photographed, of each kind of component."""
 
     asked_gsd_m: float
-    min_height_m: float = 4.0
-    max_height_m: float = 120.0
     share: float = 0.97
 
 
@@ -51,7 +46,7 @@ class Limits:
     patch: IntArray
 
 
-def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Camera, rules: DetailRules, farthest_m: float) -> Limits:
+def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Camera, farthest_m: float) -> Limits:
     """Return why each patch cannot be photographed, and places from where it can.
 
     Looks back from the patch in directions within the greatest angle, at distances up to the farthest.
@@ -72,12 +67,11 @@ def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Ca
         aimed = (pitch >= pitch_min - spare_deg) & (pitch <= pitch_max + spare_deg)
         for share in SHARES:
             place = patches.centre + direction * share * farthest_m
-            tall = (place[:, 2] >= rules.min_height_m) & (place[:, 2] <= rules.max_height_m)
+            tall = ~keep_out.band.leaves_out(place)
             here = np.where(~tall, best[Limit.HEIGHT], np.where(~aimed, best[Limit.GIMBAL], best[Limit.DISTANCE]))
             could = np.flatnonzero(free & tall & aimed & (rank > 0))
-            low = keep_out.floor(place[:, :2]) > place[:, 2]
-            outside = could[~keep_out.holds(place[could])]
-            rank = np.where(free, np.minimum(rank, np.where(low, best[Limit.HEIGHT], here)), rank)
+            outside = could[~keep_out.in_column(place[could])]
+            rank = np.where(free, np.minimum(rank, here), rank)
             seeing = outside[caster.is_free(start[outside], place[outside])]
             rank[seeing] = 0
             places.append(place[seeing])

@@ -1,15 +1,16 @@
 """A tower among its wires and neighbours: what a detail inspection flies around."""
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from inspection.scene.forms import Form
 from inspection.scene.supports import DrawnSupport
-from planning.views.keep_out import ClearanceRules, KeepOut, Span, clearance_m, keep_out, no_floor
-from planning.views.solids import FloatArray, Solid
+from planning.views.ground_band import GroundBand
+from planning.views.keep_out import ClearanceRules, KeepOut, Obstacle, Span, clearance_m, keep_out
+from planning.views.solids import Solid
 from planning.views.tower_solid import tower_solid
+
+HOTTEST_CATENARY_M = 800.0  # constant C of the catenary of a hot wire, whose sag is length^2 / (8 C)
 
 
 @dataclass(frozen=True)
@@ -21,14 +22,10 @@ class StandingSupport:
     north_m: float
     ground_m: float = 0.0
 
-
-@dataclass(frozen=True)
-class HungSpan:
-    """Wires between two supports, by their places in the site; sag_m as it is drawn."""
-
-    start: int
-    end: int
-    sag_m: float
+    @property
+    def top_m(self) -> float:
+        """As high as planners count it: where no tag states its height that is more than it is drawn with."""
+        return self.ground_m + max(self.support.height_m, self.support.likely_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,39 +44,43 @@ class TowerSite:
 
 def tower_site(
     supports: Sequence[StandingSupport],
-    spans: Sequence[HungSpan],
+    spans: Sequence[tuple[int, int]],
     rules: ClearanceRules,
-    floor: Callable[[FloatArray], FloatArray] = no_floor,
+    band: GroundBand,
+    obstacles: Sequence[Obstacle] = (),
+    lens_offset_m: float = 0.0,
 ) -> TowerSite:
-    """Return the site of the first of the supports. The clearance is that of the highest voltage there; a support without one counts."""
-    kept_m = max(clearance_m(own.support.voltage_v, rules) for own in supports)
-    solids = [_placed(own) for own in supports if own.support.form is not Form.STAKE]
-    wires = [_span(supports[span.start], supports[span.end], span.sag_m) for span in spans]
-    return TowerSite(tuple(supports), _placed(supports[0]), kept_m, keep_out(solids, wires, kept_m, floor))
+    """Return the site of the first of the supports.
+
+    spans: places of the supports at both ends. The clearance is that of the highest voltage there, and lens_offset_m more: poses are the
+    lens's, and the UAV is as far from them. obstacles: what else is on the map.
+    """
+    kept_m = max(clearance_m(own.support.voltage_v, rules) for own in supports) + lens_offset_m
+    stands = [Obstacle(_placed(own).triangles.reshape(-1, 3)[:, :2], 0.0, own.top_m) for own in supports]
+    wires = [_span(supports[start], supports[end]) for start, end in spans]
+    return TowerSite(tuple(supports), _placed(supports[0]), kept_m, keep_out([*stands, *obstacles], wires, kept_m, band))
 
 
 def _placed(own: StandingSupport) -> Solid:
     return tower_solid(own.support).turned(own.support.bearing_deg).moved((own.east_m, own.north_m, own.ground_m))
 
 
-def _span(start: StandingSupport, end: StandingSupport, sag_m: float) -> Span:
-    """As wide as the wider of both ends, as it is not known which wire leads to which side."""
+def _span(start: StandingSupport, end: StandingSupport) -> Span:
+    """As wide as the wider of both ends, as it is not known which wire leads to which side; with the sag of a hot day."""
     reach_m = max(abs(across) for own in (start, end) for across in _across(own))
-    tops_m = [own.ground_m + max([height for _, height in (*own.support.arms.slots, *own.support.arms.earth)], default=own.support.height_m)
-              for own in (start, end)]  # fmt: skip
-    return Span((start.east_m, start.north_m), (end.east_m, end.north_m), -reach_m, reach_m, tops_m[0], tops_m[1], sag_m)
+    length_m = math.hypot(end.east_m - start.east_m, end.north_m - start.north_m)
+    return Span(
+        (start.east_m, start.north_m), (end.east_m, end.north_m), -reach_m, reach_m, start.top_m, end.top_m,
+        sag_m=length_m**2 / (8.0 * HOTTEST_CATENARY_M), string_m=max(_string_m(own) for own in (start, end)),
+    )  # fmt: skip
 
 
 def _across(own: StandingSupport) -> list[float]:
     return [across for across, _ in (*own.support.arms.slots, *own.support.arms.earth)] or [0.0]
 
 
-def floor_over(heights_m: Callable[[FloatArray], FloatArray], min_height_m: float) -> Callable[[FloatArray], FloatArray]:
-    """The floor [m] that keeps this height over ground of which heights_m tells the height at places; unknown ground counts as level."""
-
-    def floor(places: FloatArray) -> FloatArray:
-        ground_m = heights_m(places)
-        least: FloatArray = np.where(np.isnan(ground_m), 0.0, ground_m) + min_height_m
-        return least
-
-    return floor
+def _string_m(own: StandingSupport) -> float:
+    """How far the lowest phase hangs below its arm: what swings with the wires."""
+    levels_m = [arm for arm, _, _ in own.support.arms.arms]
+    hung_m = [min((arm for arm in levels_m if arm >= hangs_m), default=hangs_m) - hangs_m for _, hangs_m in own.support.arms.slots]
+    return max(hung_m, default=0.0)

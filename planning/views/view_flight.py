@@ -37,19 +37,19 @@ class ViewFlight:
 
 
 class NoWay(ValueError):
-    """A pose that no way below the greatest height leads to."""
+    """A pose that no way outside of the keep-out leads to."""
 
 
-def view_flight(poses: Poses, keep_out: KeepOut, entry: FloatArray, max_height_m: float, end: FloatArray | None = None) -> ViewFlight:
+def view_flight(poses: Poses, keep_out: KeepOut, entry: FloatArray, end: FloatArray | None = None) -> ViewFlight:
     """Return the way from a place through all poses, in the order that is found to be short, and on to an end.
 
-    Raises NoWay where a pose cannot be reached below max_height_m.
+    Raises NoWay where a pose cannot be reached outside of the keep-out.
     """
     ends = [entry] if end is None else [entry, end]
     places = np.concatenate([np.array(ends), poses.position])
-    cost, via = _ways(places, keep_out, max_height_m)
+    cost, via = _ways(places, keep_out)
     nearest, before = floyd_warshall(cost, return_predecessors=True)
-    if not np.isfinite(nearest).all():
+    if not np.isfinite(nearest).all() or keep_out.holds(places).any():
         raise NoWay
     order = _order(nearest, len(ends))
     stops = [0, *order, *range(1, len(ends))]
@@ -62,10 +62,13 @@ def view_flight(poses: Poses, keep_out: KeepOut, entry: FloatArray, max_height_m
                 photos.append(NO_PHOTO)
         if there >= len(ends):
             photos[-1] = there - len(ends)
-    return ViewFlight(np.array(points), np.array(photos, dtype=np.int64))
+    flight = ViewFlight(np.array(points), np.array(photos, dtype=np.int64))
+    if keep_out.meets(flight.position[:-1], flight.position[1:]).any():
+        raise NoWay
+    return flight
 
 
-def _ways(places: FloatArray, keep_out: KeepOut, max_height_m: float) -> tuple[FloatArray, dict[tuple[int, int], tuple[FloatArray, ...]]]:
+def _ways(places: FloatArray, keep_out: KeepOut) -> tuple[FloatArray, dict[tuple[int, int], tuple[FloatArray, ...]]]:
     """The cost of going straight, or else over what is between; and the bends of the latter."""
     count = len(places)
     one, other = (index.ravel() for index in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
@@ -76,9 +79,10 @@ def _ways(places: FloatArray, keep_out: KeepOut, max_height_m: float) -> tuple[F
     np.fill_diagonal(cost, 0.0)
     via: dict[tuple[int, int], tuple[FloatArray, ...]] = {}
     for here, there in zip(one[met].tolist(), other[met].tolist(), strict=True):
-        top_m = keep_out.top_between(places[here], places[there]) + ABOVE_TOP_M
-        level_m = max(top_m, float(places[here, 2]), float(places[there, 2]))
-        if level_m > max_height_m:
+        if here == there:
+            continue
+        level_m = _level_over(places[here], places[there], keep_out)
+        if level_m is None:
             cost[here, there] = np.inf
             continue
         up, down = np.append(places[here, :2], level_m), np.append(places[there, :2], level_m)
@@ -86,6 +90,13 @@ def _ways(places: FloatArray, keep_out: KeepOut, max_height_m: float) -> tuple[F
         climb_m = 2.0 * level_m - float(places[here, 2]) - float(places[there, 2])
         cost[here, there] = float(np.linalg.norm(up - down)) + CLIMB_FACTOR * climb_m
     return cost, via
+
+
+def _level_over(start: FloatArray, end: FloatArray, keep_out: KeepOut) -> float | None:
+    """The height [m] at which a way leads over all columns and ground between two places; None where that is too high."""
+    least_m, most_m = keep_out.band.limits_between(start[:2], end[:2])
+    level_m = max(keep_out.top_between(start, end) + ABOVE_TOP_M, least_m, float(start[2]), float(end[2]))
+    return level_m if level_m <= most_m else None
 
 
 def _order(cost: FloatArray, ends: int) -> list[int]:

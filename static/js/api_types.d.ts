@@ -901,7 +901,7 @@ export interface components {
             gimbal_yaw_min_deg?: number | null;
             /** Format: double */
             gimbal_yaw_max_deg?: number | null;
-            /** @description of the lens from the antenna: forward, right, up */
+            /** @description of the lens from the antenna: forward, right, up; poses are the lens's, and the clearance is as much more */
             offset_m?: number[];
             is_thermal?: boolean;
         };
@@ -948,7 +948,7 @@ export interface components {
             gimbal_yaw_min_deg?: number | null;
             /** Format: double */
             gimbal_yaw_max_deg?: number | null;
-            /** @description of the lens from the antenna: forward, right, up */
+            /** @description of the lens from the antenna: forward, right, up; poses are the lens's, and the clearance is as much more */
             offset_m?: number[];
             is_thermal?: boolean;
         };
@@ -992,7 +992,7 @@ export interface components {
             gimbal_yaw_min_deg?: number | null;
             /** Format: double */
             gimbal_yaw_max_deg?: number | null;
-            /** @description of the lens from the antenna: forward, right, up */
+            /** @description of the lens from the antenna: forward, right, up; poses are the lens's, and the clearance is as much more */
             offset_m?: number[];
             is_thermal?: boolean;
             key: string;
@@ -4328,9 +4328,9 @@ export interface components {
             position: number[];
             /**
              * Format: double
-             * @description above the ground under the UAV
+             * @description above the ground under the UAV; null without terrain data there
              */
-            height_agl_m: number;
+            height_agl_m: number | null;
             /**
              * Format: double
              * @description above the ground at the tower
@@ -7924,10 +7924,12 @@ export interface components {
              * @description least distance from wires and supports
              */
             clearance_m: number;
+            /** @description without, the ground counts as level with the tower's foot */
+            has_terrain: boolean;
             model: components["schemas"]["TowerModel"];
             /** @description in the order in which they are taken */
             photos: components["schemas"]["PlannedPhoto"][];
-            /** @description no choice among the candidates shows as much with fewer photos */
+            /** @description no choice of fewer photos among the candidates shows enough */
             photos_bound: number;
             /** @description lon, lat, and metres above the ground at the tower; from above the tower and back to there */
             route: number[][];

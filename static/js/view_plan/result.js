@@ -76,7 +76,7 @@ const coverageTable = ({ coverage }) =>
 function photosList({ photos }, choose) {
   /** @type {HTMLElement | null} */
   let chosen = null;
-  const rows = photos.map(({ height_agl_m, yaw_deg, pitch_deg }, number) => {
+  const rows = photos.map(({ height_agl_m, height_m, yaw_deg, pitch_deg }, number) => {
     const row = h(
       "button",
       { type: "button", class: "photo-row", "aria-pressed": "false" },
@@ -85,7 +85,7 @@ function photosList({ photos }, choose) {
         "span",
         { class: "caption" },
         t("{height} AGL · yaw {yaw} · pitch {pitch}", {
-          height: exactHeightText(height_agl_m),
+          height: exactHeightText(height_agl_m ?? height_m),
           yaw: `${numberText((Math.round(yaw_deg) + 360) % 360)}${DEGREE}`,
           pitch: `${numberText(Math.round(pitch_deg))}${DEGREE}`,
         }),
@@ -113,7 +113,12 @@ function photosList({ photos }, choose) {
  * @param {(number: number | null) => void} choose a photo, null: none
  */
 export function resultOf(plan, choose) {
-  const model = h("p", { class: "caption" }, modelText(plan.model));
+  const flat = t("No terrain data: the ground counts as level, and heights from the tower’s foot.");
+  const model = h(
+    "p",
+    { class: "caption" },
+    plan.has_terrain ? modelText(plan.model) : `${modelText(plan.model)} ${flat}`,
+  );
   if (!plan.photos.length)
     return [notice("advisory", t("Nothing can be shown."), nothingText(plan)), model, coverageTable(plan)];
   return [

@@ -89,7 +89,9 @@ def test_photos_of_a_tower_keep_clear_of_its_line_and_show_it(client: Client) ->
     under = (np.abs(places[:, 1]) < plan["clearance_m"]) & (np.array([photo["height_m"] for photo in plan["photos"]]) < 40.0)
     assert not under.any(), "the line leads east and west: no photo is taken from between its wires"
     assert max(np.hypot(*places.T)) < 100.0
-    assert all(photo["height_agl_m"] >= 4.0 for photo in plan["photos"])
+    assert all(photo["height_m"] >= 4.0 for photo in plan["photos"])
+    assert plan["has_terrain"] is False
+    assert {photo["height_agl_m"] for photo in plan["photos"]} == {None}, "without terrain nobody knows it"
     assert {row["component"] for row in plan["coverage"]["components"]} >= {"body", "crossarm", "clamp", "string", "plate"}
     assert plan["route"][0] == plan["route"][-1]
 

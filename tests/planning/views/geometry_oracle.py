@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from planning.views.keep_out import Span
+from planning.views.site import StandingSupport
 from planning.views.view_flight import ViewFlight
 
 FloatArray = NDArray[np.float64]
+
+HOT_M, SWING_DEG = 800.0, 30.0  # of wires: constant of the catenary on a hot day, and swing in wind
 
 
 def flown_places(flight: ViewFlight, step_m: float) -> FloatArray:
@@ -44,25 +46,29 @@ def to_segment_m(places: FloatArray, start: FloatArray, end: FloatArray) -> Floa
     return distance
 
 
-def to_wires_m(places: FloatArray, span: Span, slots: Sequence[tuple[float, float]], swing_deg: float, near_m: float) -> FloatArray:
-    """The distance from the places that wires of one span, at both ends at these slots (across, height), have when they swing.
+def to_wires_m(places: FloatArray, supports: Sequence[StandingSupport], start: int, end: int) -> FloatArray:
+    """The distance from the places that wires between two supports, which are alike, have when they swing.
 
-    Each wire is a parabola with the span's sag, turned about the line between its ends by angles up to swing_deg to both sides; it is
-    looked at every 0.25 m, which is 4 mm too far at 2 m at most.
+    Each wire is a parabola with any sag up to that of a catenary constant of HOT_M, turned about the line between its ends by angles up to
+    SWING_DEG to both sides, which also swings the string that it hangs from; it is looked at every 0.25 m, which is 4 mm too far at 2 m.
     """
-    start, end = np.array([*span.start, 0.0]), np.array([*span.end, 0.0])
-    length_m = float(np.linalg.norm(end - start))
-    along = (end - start) / length_m
-    right = np.array([along[1], -along[0], 0.0])
-    at_m = np.arange(0.0, min(length_m, near_m), 0.25)[:, None]
-    drop_m = 4.0 * span.sag_m * (at_m / length_m) * (1.0 - at_m / length_m)
-    wires = [
-        start + at_m * along + (across_m + drop_m * share * np.sin(angle)) * right
-        + (height_m - drop_m * share * np.cos(angle)) * np.array([0.0, 0.0, 1.0])
-        for across_m, height_m in slots
-        for share in (0.0, 0.5, 1.0)
-        for angle in np.radians((-swing_deg, -swing_deg / 2, 0.0, swing_deg / 2, swing_deg))
-    ]  # fmt: skip
+    one, other = (np.array([own.east_m, own.north_m, own.ground_m]) for own in (supports[start], supports[end]))
+    length_m = float(np.linalg.norm((other - one)[:2]))
+    right = np.array([other[1] - one[1], one[0] - other[0], 0.0]) / length_m
+    own = supports[start].support
+    if np.dot(right[:2], [np.cos(np.radians(own.bearing_deg)), -np.sin(np.radians(own.bearing_deg))]) < 0.0:
+        right = -right
+    share = np.arange(0.0, 1.0, 0.25 / length_m)[:, None]
+    drop_m = 4.0 * length_m**2 / (8.0 * HOT_M) * share * (1.0 - share)
+    levels_m = [level for level, _, _ in own.arms.arms]
+    wires = []
+    for across_m, height_m in (*own.arms.slots, *own.arms.earth):
+        string_m = min((level for level in levels_m if level >= height_m), default=height_m) - height_m
+        for part in (0.0, 0.5, 1.0):
+            for angle in np.radians((-SWING_DEG, -SWING_DEG / 2, 0.0, SWING_DEG / 2, SWING_DEG)):
+                side_m = across_m + (drop_m * part + string_m) * np.sin(angle)
+                up_m = height_m + string_m - (drop_m * part + string_m) * np.cos(angle)
+                wires.append(one + (other - one) * share + side_m * right + up_m * np.array([0.0, 0.0, 1.0]))
     distance_m, _ = KDTree(np.concatenate(wires)).query(places)
     return np.asarray(distance_m)
 

@@ -9,23 +9,23 @@ from embreex.rtcore_scene import EmbreeScene
 
 from planning.views.camera import Camera, Gimbal, standoff_m
 from planning.views.coverage import Coverage, by_component, coverage_of
-from planning.views.detail_views import REACH_M, DetailViews, detail_views
-from planning.views.keep_out import SWING_DEG
+from planning.views.detail_views import REACH_M, DetailViews, TooManyPhotos, detail_views
+from planning.views.ground_band import GroundBand
+from planning.views.keep_out import KeepOut
 from planning.views.limits import LIMITS, DetailRules, Limit, limits_of
 from planning.views.solids import Component, patches_of
-from planning.views.view_flight import NO_PHOTO, NoWay, view_flight
+from planning.views.view_flight import NO_PHOTO, NoWay, ViewFlight, view_flight
 from planning.views.visibility import MAX_ANGLE_DEG, RayCaster, axes_of
 from tests.planning.views.geometry_oracle import first_hit, flown_places, to_triangles_m, to_wires_m
-from tests.planning.views.towers import FULL_FRAME, TOWERS, WIDE, ZOOM, standing
+from tests.planning.views.towers import FULL_FRAME, MAX_HEIGHT_M, MIN_HEIGHT_M, TOWERS, WIDE, ZOOM, StandingTower, standing
 
 CASES = [
     ("lattice, 380 kV, barrel", ZOOM, 0.002),
     ("lattice, 110 kV, triangle", FULL_FRAME, 0.004),
     ("guyed, 220 kV, one level", FULL_FRAME, 0.004),
-    ("H-frame, 66 kV, anchor", WIDE, 0.004),
+    ("H-frame, 66 kV, anchor", WIDE, 0.006),
     ("wooden pole, 20 kV", ZOOM, 0.002),
 ]
-MAX_HEIGHT_M = 120.0
 FRAME_PIXELS = (1600, 1200)  # of rendered pictures
 
 each_case = pytest.mark.parametrize(("tower", "camera", "gsd_m"), CASES, ids=[f"{tower}, {camera.name}" for tower, camera, _ in CASES])
@@ -42,7 +42,7 @@ def proven(tower: str, camera: Camera, gsd_m: float, patch_m: float = 0.8) -> Co
     stands, views = standing(TOWERS[tower]), planned(tower, camera, gsd_m)
     patches, caster = patches_of(stands.solid, patch_m), RayCaster([stands.solid])
     farthest_m = min(standoff_m(camera, gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
-    limits = limits_of(patches, stands.keep_out, caster, camera, DetailRules(gsd_m), farthest_m)
+    limits = limits_of(patches, stands.keep_out, caster, camera, farthest_m)
     return coverage_of(views.poses, views.lens, camera, patches, caster, limits.limit)
 
 
@@ -53,9 +53,8 @@ def test_poses_keep_clear_and_within_what_gimbal_and_heights_allow(tower: str, c
     assert not stands.keep_out.holds(poses.position).any()
     assert poses.pitch_deg.min() >= camera.gimbal.pitch_min_deg
     assert poses.pitch_deg.max() <= camera.gimbal.pitch_max_deg
-    rules = DetailRules(gsd_m)
-    assert poses.position[:, 2].min() >= rules.min_height_m
-    assert poses.position[:, 2].max() <= rules.max_height_m
+    assert poses.position[:, 2].min() >= MIN_HEIGHT_M
+    assert poses.position[:, 2].max() <= MAX_HEIGHT_M
 
 
 @each_case
@@ -69,27 +68,59 @@ def test_finer_patches_prove_what_the_plan_promises(tower: str, camera: Camera, 
     assert reached > 0.8, "nearly all of a tower can be photographed with these lenses"
 
 
+def keeps_clear(stands: StandingTower, flight: ViewFlight) -> None:
+    places = flown_places(flight, 0.3)  # 0.1 s at 3 m/s
+    assert to_triangles_m(places, stands.solid.triangles).min() >= stands.clearance_m - 1e-6
+    for start, end in ((0, 1), (2, 0)):
+        assert to_wires_m(places, stands.supports, start, end).min() >= stands.clearance_m - 0.01
+
+
 @each_case
 def test_the_flight_keeps_the_clearance_from_structures_and_swinging_wires(tower: str, camera: Camera, gsd_m: float) -> None:
     stands, views = standing(TOWERS[tower]), planned(tower, camera, gsd_m)
-    above = np.array([0.0, 0.0, stands.keep_out.top_m.max() + 2.0])
-    flight = view_flight(views.poses, stands.keep_out, above, MAX_HEIGHT_M, above)
+    flight = view_flight(views.poses, stands.keep_out, stands.entry, stands.entry)
     assert sorted(flight.photo[flight.photo != NO_PHOTO].tolist()) == list(range(len(views.poses)))
     np.testing.assert_array_equal(flight.position[flight.photo != NO_PHOTO], views.poses.position[flight.photo[flight.photo != NO_PHOTO]])
-    np.testing.assert_array_equal(flight.position[[0, -1]], [above, above])
-    places = flown_places(flight, 0.3)  # 0.1 s at 3 m/s
-    assert to_triangles_m(places, stands.solid.triangles).min() >= stands.clearance_m - 1e-6
-    wires = (*stands.support.arms.slots, *stands.support.arms.earth)
-    for span in stands.spans:
-        turned = tuple((across * (1.0 if span.end[1] > 0 else -1.0), height) for across, height in wires)
-        assert to_wires_m(places, span, turned, SWING_DEG, 100.0).min() >= stands.clearance_m - 1e-6
-    assert places[:, 2].max() <= MAX_HEIGHT_M
+    np.testing.assert_array_equal(flight.position[[0, -1]], [stands.entry, stands.entry])
+    keeps_clear(stands, flight)
+    assert flight.position[:, 2].max() <= MAX_HEIGHT_M
+
+
+@pytest.mark.parametrize("bearing_deg", [0.0, 75.0])
+def test_over_hills_no_part_of_a_flight_is_too_low_or_too_high(bearing_deg: float) -> None:
+    def hills_m(at: np.ndarray) -> np.ndarray:
+        def knoll_m(east: float, north: float) -> np.ndarray:
+            return 25.0 * np.exp(-((at[:, 0] - east) ** 2 + (at[:, 1] - north) ** 2) / 400.0)
+
+        return knoll_m(35.0, 20.0) + knoll_m(-40.0, -10.0) + 0.2 * at[:, 1]
+
+    stands = standing(TOWERS["lattice, 110 kV, triangle"], bearing_deg, lambda at: hills_m(at) - hills_m(np.zeros((1, 2))))
+    views = detail_views(stands.solid, stands.keep_out, ZOOM, DetailRules(0.002))
+    flight = view_flight(views.poses, stands.keep_out, stands.entry, stands.entry)
+    places = flown_places(flight, 0.3)
+    over_m = places[:, 2] - hills_m(places[:, :2]) + hills_m(np.zeros((1, 2)))
+    assert over_m.min() >= MIN_HEIGHT_M - 0.1
+    assert over_m.max() <= MAX_HEIGHT_M
+    keeps_clear(stands, flight)
 
 
 def test_a_flight_that_would_lead_above_the_limit_is_refused() -> None:
     stands, views = standing(TOWERS["lattice, 380 kV, barrel"]), planned(*CASES[0])
+    low = KeepOut(stands.keep_out.bound, stands.keep_out.top_m, GroundBand.level(MIN_HEIGHT_M, 62.0))
     with pytest.raises(NoWay):
-        view_flight(views.poses, stands.keep_out, views.poses.position[0], 45.0)
+        view_flight(views.poses, low, views.poses.position[0])
+    with pytest.raises(NoWay):
+        view_flight(views.poses, stands.keep_out, np.array([0.0, 0.0, 130.0]))
+
+
+def test_hostile_cameras_are_refused_at_once() -> None:
+    stands = standing(TOWERS["lattice, 380 kV, barrel"])
+    tiny = Camera("tiny", 6.4, 4.8, 320, 240, (400.0,))
+    with pytest.raises(TooManyPhotos):
+        detail_views(stands.solid, stands.keep_out, tiny, DetailRules(0.0005))
+    narrow = Camera("narrow", 6.4, 4.8, 8000, 6000, (500.0,))
+    with pytest.raises(TooManyPhotos):
+        detail_views(stands.solid, stands.keep_out, narrow, DetailRules(0.1))
 
 
 @pytest.mark.parametrize(("tower", "camera", "gsd_m", "patch_m"), [(*CASES[1], 0.25), (*CASES[4], 0.08)], ids=["lattice", "pole"])
@@ -132,23 +163,24 @@ def test_rays_meet_what_plain_formulas_say_they_meet() -> None:
 
 
 def test_what_cannot_be_shown_has_its_reason() -> None:
-    tower, camera, gsd_m = CASES[0]
+    tower, camera, _ = CASES[0]
     stands = standing(TOWERS[tower])
     patches, caster = patches_of(stands.solid, 2.0), RayCaster([stands.solid])
 
-    def limits(camera: Camera, rules: DetailRules) -> set[Limit]:
-        farthest_m = standoff_m(camera, rules.asked_gsd_m, camera.focal_lengths_mm[-1])
-        return {LIMITS[own] for own in limits_of(patches, stands.keep_out, caster, camera, rules, farthest_m).limit.tolist()}
+    def limits(camera: Camera, kept: KeepOut = stands.keep_out) -> set[Limit]:
+        farthest_m = standoff_m(camera, 0.002, camera.focal_lengths_mm[-1])
+        return {LIMITS[own] for own in limits_of(patches, kept, caster, camera, farthest_m).limit.tolist()}
 
-    assert limits(WIDE, DetailRules(0.002)) == {Limit.HIDDEN, Limit.DISTANCE, Limit.HEIGHT}, "its lens is too wide for 2 mm from outside"
+    assert limits(WIDE) == {Limit.HIDDEN, Limit.DISTANCE, Limit.HEIGHT}, "its lens is too wide for 2 mm from outside"
     level = Camera("level", 6.4, 4.8, 8000, 6000, (28.4,), gimbal=Gimbal(-5.0, 5.0))
-    assert Limit.GIMBAL in limits(level, DetailRules(0.002))
-    assert Limit.HEIGHT in limits(camera, DetailRules(gsd_m, min_height_m=40.0))
+    assert Limit.GIMBAL in limits(level)
+    high = KeepOut(stands.keep_out.bound, stands.keep_out.top_m, GroundBand.level(40.0, MAX_HEIGHT_M))
+    assert Limit.HEIGHT in limits(camera, high)
 
 
 def test_a_camera_that_shows_nothing_gets_no_photo_and_no_error() -> None:
     stands = standing(TOWERS["lattice, 765 kV, delta"])
-    views = detail_views(stands.solid, stands.keep_out, WIDE, DetailRules(0.0005))
+    views = detail_views(stands.solid, stands.keep_out, WIDE, DetailRules(0.003))
     assert len(views.poses) == 0
     assert views.bound == 0
 

@@ -1,30 +1,49 @@
 """Towers, wires and cameras of tests and benchmarks of views."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from inspection.scene.forms import Form, Layout
 from inspection.scene.supports import DrawnSupport, arms_of
 from planning.views.camera import Camera, Gimbal
-from planning.views.keep_out import ClearanceRules, KeepOut, Span, clearance_m, keep_out
-from planning.views.solids import Solid
-from planning.views.tower_solid import tower_solid
+from planning.views.ground_band import GroundBand
+from planning.views.keep_out import ClearanceRules, KeepOut
+from planning.views.site import StandingSupport, TowerSite, tower_site
+from planning.views.solids import FloatArray, Solid
 
-SPAN_M, SAG_M = 300.0, 9.0
+SPAN_M = 300.0
+MIN_HEIGHT_M, MAX_HEIGHT_M = 4.0, 120.0
 
 ZOOM = Camera("zoom", 6.4, 4.8, 8000, 6000, (7.1, 10.0, 14.0, 20.0, 28.4), 0.7, 5.0, gimbal=Gimbal(-120.0, 45.0))
 FULL_FRAME = Camera("full frame, 35 mm", 35.9, 24.0, 8192, 5460, (35.0,), 0.7, 1.0, gimbal=Gimbal(-130.0, 40.0))
 WIDE = Camera("four thirds, wide", 17.3, 13.0, 5280, 3956, (12.3,), 0.7, 1.0, gimbal=Gimbal(-90.0, 35.0))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StandingTower:
-    """A tower in the frame of its line, the wires on both sides, and what is kept from them."""
+    """A tower among its neighbours, and the site that is planned on."""
 
     support: DrawnSupport
-    solid: Solid
-    spans: tuple[Span, ...]
-    clearance_m: float
-    keep_out: KeepOut
+    site: TowerSite
+    supports: tuple[StandingSupport, ...]
+
+    @property
+    def solid(self) -> Solid:
+        return self.site.solid
+
+    @property
+    def clearance_m(self) -> float:
+        return self.site.clearance_m
+
+    @property
+    def keep_out(self) -> KeepOut:
+        return self.site.keep_out
+
+    @property
+    def entry(self) -> FloatArray:
+        return np.array([0.0, 0.0, self.keep_out.top_at(np.zeros(2)) + 2.0])
 
 
 def support(
@@ -34,12 +53,15 @@ def support(
     return DrawnSupport("tower", form, height_m, "tag", height_m, voltage_v, is_anchor, 0.0, arms)
 
 
-def standing(own: DrawnSupport) -> StandingTower:
-    solid, kept_m = tower_solid(own), clearance_m(own.voltage_v, ClearanceRules())
-    across = [place for place, _ in (*own.arms.slots, *own.arms.earth)]
-    sides = ((1.0, min(across), max(across)), (-1.0, -max(across), -min(across)))  # left and right change where a span leads back
-    spans = tuple(Span((0.0, 0.0), (0.0, side * SPAN_M), left, right, own.likely_m, own.likely_m, SAG_M) for side, left, right in sides)
-    return StandingTower(own, solid, spans, kept_m, keep_out([solid], spans, kept_m))
+def standing(own: DrawnSupport, bearing_deg: float = 0.0, ground_m: Callable[[FloatArray], FloatArray] | None = None) -> StandingTower:
+    """In a straight line of towers of its kind, SPAN_M apart, over level ground or a terrain."""
+    own = replace(own, bearing_deg=bearing_deg)
+    along = np.array([np.sin(np.radians(bearing_deg)), np.cos(np.radians(bearing_deg))])
+    places = np.array([along * side * SPAN_M for side in (0.0, 1.0, -1.0)])
+    feet_m = np.zeros(3) if ground_m is None else ground_m(places)
+    supports = [StandingSupport(own, *place, foot_m) for place, foot_m in zip(places.tolist(), feet_m.tolist(), strict=True)]
+    band = GroundBand.level(MIN_HEIGHT_M, MAX_HEIGHT_M) if ground_m is None else GroundBand.over(ground_m, MIN_HEIGHT_M, MAX_HEIGHT_M)
+    return StandingTower(own, tower_site(supports, [(0, 1), (2, 0)], ClearanceRules(), band), tuple(supports))
 
 
 TOWERS = {
