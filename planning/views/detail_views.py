@@ -23,7 +23,9 @@ ABOVE_M = (0.5, 6.0)  # the top of the keep-out
 DISTANCE_SHARES = (0.0, 0.35, 0.75)  # of the way from the keep-out to the farthest place
 MIN_COSINE = 0.2  # of a pitch, by which steps of yaw are widened
 CUBES_M = (1.5, 0.5)  # sides of cubes with one place each, of those from where patches can be seen that no candidate sees
-MAX_PHOTOS, MAX_CANDIDATES = 200, 30_000
+MAX_PHOTOS, MAX_CANDIDATES = 200, 15_000
+SEED = 33  # of the order in which positions are looked at, where there are too many for all
+LITTLE = 0.1  # of a surface that can be shown: then it is looked at on smaller patches
 MUCH = 0.2  # of what the photo shows that shows the most
 REACH_M = 80.0  # from the asset's axis, of candidate positions
 LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
@@ -31,7 +33,7 @@ ENOUGH = 0.99  # of what the longest focal length reaches, for a shorter one to 
 
 
 class TooManyPhotos(ValueError):
-    """More than MAX_PHOTOS would be needed, or more than MAX_CANDIDATES weighed."""
+    """More than MAX_PHOTOS would be needed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,14 +57,16 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
 
     Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance.
     """
-    height_m = float(solid.box[1][2])
-    patches = patches_of(solid, float(np.clip(height_m / PATCHES_HIGH, MIN_PATCH_M, MAX_PATCH_M)))
     caster = RayCaster([solid])
-    picture_m2 = camera.pixels_wide * camera.pixels_high * rules.asked_gsd_m**2
-    if float(patches.area_m2.sum()) > MAX_PHOTOS * picture_m2:
-        raise TooManyPhotos
     farthest_m = min(standoff_m(camera, rules.asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
-    limits = limits_of(patches, keep_out, caster, camera, farthest_m)
+    for patch_m in (float(np.clip(float(solid.box[1][2]) / PATCHES_HIGH, MIN_PATCH_M, MAX_PATCH_M)), MIN_PATCH_M):
+        patches = patches_of(solid, patch_m)
+        limits = limits_of(patches, keep_out, caster, camera, farthest_m)
+        reachable_m2 = float(patches.area_m2[limits.limit == 0].sum())
+        if reachable_m2 >= LITTLE * float(patches.area_m2.sum()):
+            break
+    if reachable_m2 > MAX_PHOTOS * camera.pixels_wide * camera.pixels_high * rules.asked_gsd_m**2:
+        raise TooManyPhotos
     positions = candidate_positions(solid, keep_out, farthest_m)
     sight = line_of_sight(positions, patches, caster, farthest_m)
     for cube_m in CUBES_M:
@@ -153,17 +157,19 @@ def _lens(camera: Camera, rules: DetailRules, positions: FloatArray, patches: Pa
 
 
 def _photos(positions: FloatArray, patches: Patches, sight: BoolArray, camera: Camera, lens: Lens) -> tuple[Poses, BoolArray]:
-    """Aims from each position at what is seen from there, half a picture apart, and what each photo shows."""
+    """Aims from positions at what is seen from there, half a picture apart, and what each photo shows; about MAX_CANDIDATES at most."""
     step_yaw = math.degrees(math.atan(camera.sensor_width_mm / (2.0 * lens.focal_mm)))
     step_pitch = math.degrees(math.atan(camera.sensor_height_mm / (2.0 * lens.focal_mm)))
     places: list[int] = []
     yaws: list[FloatArray] = []
     pitches: list[FloatArray] = []
     rows: list[BoolArray] = []
-    for number, position in enumerate(positions):
-        seen = np.flatnonzero(sight[number])
+    for number in np.random.default_rng(SEED).permutation(len(positions)).tolist():
+        position, seen = positions[number], np.flatnonzero(sight[number])
         if not len(seen):
             continue
+        if len(places) > MAX_CANDIDATES:
+            break
         yaw, pitch = aim_at(position, patches.centre[seen])
         middle = float(np.degrees(np.arctan2(np.sin(np.radians(yaw)).mean(), np.cos(np.radians(yaw)).mean())))
         turned = (yaw - middle + 180.0) % 360.0 - 180.0
@@ -175,8 +181,6 @@ def _photos(positions: FloatArray, patches: Patches, sight: BoolArray, camera: C
         whole = np.zeros((int(some.sum()), len(patches)), dtype=bool)
         whole[:, seen] = shown[some]
         places += [number] * len(whole)
-        if len(places) > MAX_CANDIDATES:
-            raise TooManyPhotos
         yaws.append(own_yaw[some])
         pitches.append(own_pitch[some])
         rows.append(whole)
