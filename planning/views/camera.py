@@ -5,12 +5,12 @@ Formulas of the pinhole camera: K. Kraus, Photogrammetry, 2nd edition, chapter 1
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from operation.reasons import Reason
 
-DOWN_DEG, UP_DEG = -90.0, 90.0
+DOWN_DEG = -90.0
 MIN_VIEW_DEG, MAX_VIEW_DEG = 0.5, 150.0  # of a picture's sides
 MAX_SQUARE_ERROR = 0.1  # between a pixel's width and height: above that a figure is wrong
 
@@ -34,9 +34,6 @@ class Gimbal:
     pitch_max_deg: float = 0.0
     yaw_min_deg: float | None = None
     yaw_max_deg: float | None = None
-
-    def can_pitch(self, pitch_deg: float) -> bool:
-        return self.pitch_min_deg <= pitch_deg <= self.pitch_max_deg
 
 
 @dataclass(frozen=True)
@@ -93,12 +90,6 @@ class Camera:
     def pixel_mm(self) -> float:
         """The larger side of a pixel on the sensor."""
         return max(self.pixel_width_mm, self.pixel_height_mm)
-
-    def at_zoom(self, focal_mm: float) -> "Camera":
-        """The same camera with its lens at one of its focal lengths."""
-        if focal_mm not in self.focal_lengths_mm:
-            raise ValueError(f"{self.name} has no focal length of {focal_mm:g} mm")
-        return replace(self, focal_lengths_mm=(focal_mm,))
 
 
 def gsd_m(camera: Camera, distance_m: float, focal_mm: float) -> float:

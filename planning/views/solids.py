@@ -26,17 +26,10 @@ class Component(StrEnum):
     CLAMP = "clamp"
     EARTH_WIRE_PEAK = "earth_wire_peak"
     GUY = "guy"
-    DECK = "deck"
-    FACE = "face"
-    UNDERSIDE = "underside"
-    PIER = "pier"
-    BEARING = "bearing"
-    TRACK = "track"
-    MAST = "mast"
 
 
 # Patches of these are larger, by this factor: there is much of them, and it looks the same.
-COARSER = {Component.BODY: 1.5, Component.GUY: 2.0, Component.DECK: 1.5, Component.FACE: 1.5, Component.UNDERSIDE: 1.5}
+COARSER = {Component.BODY: 1.5, Component.GUY: 2.0}
 
 
 @dataclass(frozen=True, eq=False)

@@ -1311,16 +1311,9 @@ export interface components {
          *     * `clamp` - clamp
          *     * `earth_wire_peak` - earth_wire_peak
          *     * `guy` - guy
-         *     * `deck` - deck
-         *     * `face` - face
-         *     * `underside` - underside
-         *     * `pier` - pier
-         *     * `bearing` - bearing
-         *     * `track` - track
-         *     * `mast` - mast
          * @enum {string}
          */
-        ComponentEnum: "foundation" | "plate" | "body" | "head" | "crossarm" | "string" | "clamp" | "earth_wire_peak" | "guy" | "deck" | "face" | "underside" | "pier" | "bearing" | "track" | "mast";
+        ComponentEnum: "foundation" | "plate" | "body" | "head" | "crossarm" | "string" | "clamp" | "earth_wire_peak" | "guy";
         /** @description Wind and temperature during the flight; without wind it is calm. */
         ConditionsOutput: {
             wind: components["schemas"]["WindLayerOutput"][];
