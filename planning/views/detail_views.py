@@ -152,7 +152,8 @@ def _lens(camera: Camera, rules: DetailRules, positions: FloatArray, patches: Pa
 
     longest_mm = camera.focal_lengths_mm[-1]
     most_m2 = seen_m2(longest_mm)
-    focal_mm = next((own for own in camera.focal_lengths_mm if seen_m2(own) >= ENOUGH * most_m2), longest_mm)
+    enough = (own for own in camera.focal_lengths_mm if most_m2 > 0.0 and seen_m2(own) >= ENOUGH * most_m2)
+    focal_mm = next(enough, longest_mm)
     return Lens(focal_mm, nearest_m, standoff_m(camera, rules.asked_gsd_m, focal_mm))
 
 

@@ -17,15 +17,16 @@ BESIDE_M = 1.0  # what stands nearer hides a patch
 
 
 class Limit(StrEnum):
-    """Why no photo can show a patch, from the first that bars it."""
+    """Why no photo can show a patch, from what is missing the least to what is missing the most."""
 
     NONE = ""
-    HIDDEN = "hidden"  # by the asset itself
-    HEIGHT = "height"  # only from below the least height above ground, or from above the greatest
+    DISTANCE = "distance"  # too coarse, or not sharp, from outside the keep-out
     GIMBAL = "gimbal"  # only with a pitch that the gimbal does not reach
-    DISTANCE = "distance"  # too coarse from outside the keep-out
+    HEIGHT = "height"  # only from below the least height above ground, or from above the greatest
+    HIDDEN = "hidden"  # by the asset itself
 
 
+NONE, DISTANCE, GIMBAL, HEIGHT, HIDDEN = range(len(Limit))
 LIMITS = tuple(Limit)
 
 
@@ -52,34 +53,31 @@ def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Ca
     Looks back from the patch in directions within the greatest angle, at distances up to the farthest.
     """
     directions = _directions(patches.normal)
-    found = np.full(len(patches), LIMITS.index(Limit.HIDDEN), dtype=np.int64)
     start = patches.centre + OFF_SURFACE_M * patches.normal
     pitch_min, pitch_max = camera.gimbal.pitch_min_deg, camera.gimbal.pitch_max_deg
     spare_deg = np.degrees(np.arctan(camera.sensor_height_mm / (2.0 * camera.focal_lengths_mm[-1])))
-    best = {Limit.DISTANCE: 1, Limit.GIMBAL: 2, Limit.HEIGHT: 3, Limit.HIDDEN: 4}
-    rank = np.full(len(patches), best[Limit.HIDDEN], dtype=np.int64)
+    limit = np.full(len(patches), HIDDEN, dtype=np.int64)
     places, of_patch = [np.zeros((0, 3))], [np.zeros(0, dtype=np.int64)]
     for direction in np.moveaxis(directions, 1, 0):
-        open_ = rank > 0
+        open_ = limit > NONE
         free = np.zeros(len(patches), dtype=bool)
         free[open_] = caster.is_free(start[open_], start[open_] + direction[open_] * BESIDE_M)
         pitch = -np.degrees(np.arcsin(np.clip(direction[:, 2], -1.0, 1.0)))
         aimed = (pitch >= pitch_min - spare_deg) & (pitch <= pitch_max + spare_deg)
         for share in SHARES:
+            if share * farthest_m < camera.nearest_focus_m:
+                continue
             place = patches.centre + direction * share * farthest_m
             tall = ~keep_out.band.leaves_out(place)
-            here = np.where(~tall, best[Limit.HEIGHT], np.where(~aimed, best[Limit.GIMBAL], best[Limit.DISTANCE]))
-            could = np.flatnonzero(free & tall & aimed & (rank > 0))
+            here = np.where(~tall, HEIGHT, np.where(~aimed, GIMBAL, DISTANCE))
+            could = np.flatnonzero(free & tall & aimed & (limit > NONE))
             outside = could[~keep_out.in_column(place[could])]
-            rank = np.where(free, np.minimum(rank, here), rank)
+            limit = np.where(free, np.minimum(limit, here), limit)
             seeing = outside[caster.is_free(start[outside], place[outside])]
-            rank[seeing] = 0
+            limit[seeing] = NONE
             places.append(place[seeing])
             of_patch.append(seeing)
-    for limit, own in best.items():
-        found[rank == own] = LIMITS.index(limit)
-    found[rank == 0] = 0
-    return Limits(found, np.concatenate(places), np.concatenate(of_patch))
+    return Limits(limit, np.concatenate(places), np.concatenate(of_patch))
 
 
 def _directions(normal: FloatArray) -> FloatArray:

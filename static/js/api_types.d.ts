@@ -1294,10 +1294,10 @@ export interface components {
             /**
              * @description why most of the rest cannot be shown
              *
-             *     * `hidden` - hidden
-             *     * `height` - height
-             *     * `gimbal` - gimbal
              *     * `distance` - distance
+             *     * `gimbal` - gimbal
+             *     * `height` - height
+             *     * `hidden` - hidden
              */
             limit: (components["schemas"]["LimitEnum"] | components["schemas"]["NullEnum"]) | null;
         };
@@ -2784,13 +2784,13 @@ export interface components {
             reference: components["schemas"]["HeightReference"] | components["schemas"]["BlankEnum"];
         };
         /**
-         * @description * `hidden` - hidden
-         *     * `height` - height
+         * @description * `distance` - distance
          *     * `gimbal` - gimbal
-         *     * `distance` - distance
+         *     * `height` - height
+         *     * `hidden` - hidden
          * @enum {string}
          */
-        LimitEnum: "hidden" | "height" | "gimbal" | "distance";
+        LimitEnum: "distance" | "gimbal" | "height" | "hidden";
         /** @description A height with its reference. */
         LimitInputRequest: {
             /** Format: double */

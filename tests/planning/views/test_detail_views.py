@@ -1,5 +1,6 @@
 """Photos of whole towers: clear of wires, within the camera's limits, of nearly all that can be shown, and proven by other means."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -173,6 +174,7 @@ def test_what_cannot_be_shown_has_its_reason() -> None:
     assert limits(WIDE) == {Limit.HIDDEN, Limit.DISTANCE, Limit.HEIGHT}, "its lens is too wide for 2 mm from outside"
     level = Camera("level", 6.4, 4.8, 8000, 6000, (28.4,), gimbal=Gimbal(-5.0, 5.0))
     assert Limit.GIMBAL in limits(level)
+    assert Limit.NONE not in limits(replace(ZOOM, nearest_focus_m=100.0)), "it is sharp from 100 m, and fine enough up to 71 m"
     high = KeepOut(stands.keep_out.bound, stands.keep_out.top_m, GroundBand.level(40.0, MAX_HEIGHT_M))
     assert Limit.HEIGHT in limits(camera, high)
 
