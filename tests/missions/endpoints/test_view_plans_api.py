@@ -1,5 +1,6 @@
 """Photos of a tower over the API: cameras of types and of the catalogue, plans, and what is wrong with requests."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -7,9 +8,11 @@ import pytest
 from django.test import Client
 
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.services import import_terrain
 from planning.views.catalogue import catalogue
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import patch, post
 from tests.missions.worlds import power_line, world, zone_around
 from workspace.models import Role
@@ -94,6 +97,17 @@ def test_photos_of_a_tower_keep_clear_of_its_line_and_show_it(client: Client) ->
     assert {photo["height_agl_m"] for photo in plan["photos"]} == {None}, "without terrain nobody knows it"
     assert {row["component"] for row in plan["coverage"]["components"]} >= {"body", "crossarm", "clamp", "string", "plate"}
     assert plan["route"][0] == plan["route"][-1]
+
+
+def test_over_a_slope_every_photo_is_at_an_allowed_height_above_its_own_ground(client: Client, tmp_path: Path) -> None:
+    tower = world(height_m=30.0).towers[2]
+    slope_m = 200.0 + np.repeat(np.arange(300.0)[:, None], 300, axis=1) * 20.0  # from post to post, 111 m to the south
+    import_terrain(path=write_geotiff(tmp_path / "slope.tif", slope_m.astype("f4"), srid=9707, origin=(9.95, 56.05)))
+    plan = planned(client, {"asset": tower.pk, "camera_key": ZOOM, "gsd_mm": 4, "min_height_m": 8})
+    assert plan["has_terrain"] is True
+    heights_m = [photo["height_agl_m"] for photo in plan["photos"]]
+    assert 8.0 <= min(heights_m) <= max(heights_m) <= 120.0
+    assert any(abs(photo["height_agl_m"] - photo["height_m"]) > 1.0 for photo in plan["photos"]), "the ground is not level"
 
 
 def test_a_finer_gsd_takes_more_photos_and_one_that_no_lens_reaches_none(client: Client) -> None:

@@ -10,7 +10,7 @@ from embreex.rtcore_scene import EmbreeScene
 
 from planning.views.camera import Camera, Gimbal, standoff_m
 from planning.views.coverage import Coverage, by_component, coverage_of
-from planning.views.detail_views import MAX_CANDIDATES, REACH_M, DetailViews, TooManyPhotos, detail_views
+from planning.views.detail_views import MAX_CANDIDATES, DetailViews, TooManyPhotos, detail_views, reach_m
 from planning.views.ground_band import GroundBand
 from planning.views.keep_out import KeepOut
 from planning.views.limits import LIMITS, DetailRules, Limit, limits_of
@@ -42,7 +42,7 @@ def planned(tower: str, camera: Camera, gsd_m: float) -> DetailViews:
 def proven(tower: str, camera: Camera, gsd_m: float, patch_m: float = 0.8) -> Coverage:
     stands, views = standing(TOWERS[tower]), planned(tower, camera, gsd_m)
     patches, caster = patches_of(stands.solid, patch_m), RayCaster([stands.solid])
-    farthest_m = min(standoff_m(camera, gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
+    farthest_m = reach_m(camera, gsd_m)
     limits = limits_of(patches, stands.keep_out, caster, camera, farthest_m)
     return coverage_of(views.poses, views.lens, camera, patches, caster, limits.limit)
 
