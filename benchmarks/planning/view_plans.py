@@ -18,10 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.report import machine, table, write_section
-from planning.views.camera import standoff_m
 from planning.views.catalogue import catalogue
 from planning.views.coverage import coverage_of
-from planning.views.detail_views import REACH_M, DetailViews, detail_views
+from planning.views.detail_views import DetailViews, detail_views, reach_m
 from planning.views.limits import LIMITS, DetailRules, Limit, limits_of
 from planning.views.solids import patches_of
 from planning.views.view_flight import view_flight
@@ -57,7 +56,7 @@ def measured(stands: StandingTower, key: str, gsd_m: float) -> Measured:
     flight = view_flight(views.poses, stands.keep_out, stands.entry, stands.entry)
     flown = time.process_time()
     patches, caster = patches_of(stands.solid, PATCH_M), RayCaster([stands.solid])
-    farthest_m = min(standoff_m(camera, gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
+    farthest_m = reach_m(camera, gsd_m)
     limits = limits_of(patches, stands.keep_out, caster, camera, farthest_m)
     coverage = coverage_of(views.poses, views.lens, camera, patches, caster, limits.limit)
     barred_m2 = np.bincount(limits.limit, patches.area_m2, minlength=len(LIMITS))

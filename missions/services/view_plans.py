@@ -14,7 +14,7 @@ from planning.checks.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.views.camera import Camera, camera_to_json
 from planning.views.coverage import ComponentCoverage
-from planning.views.detail_plan import DetailPlan, DetailSpeeds, detail_plan
+from planning.views.detail_views import DetailPlan, DetailSpeeds, detail_plan
 from planning.views.limits import DetailRules
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO

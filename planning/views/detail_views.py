@@ -1,4 +1,4 @@
-"""Photos of every part of an asset at an asked ground sample distance, from outside the clearance."""
+"""Photos of every part of an asset at an asked ground sample distance, from outside the clearance, and the flight through them."""
 
 import math
 from dataclasses import dataclass, field
@@ -9,9 +9,12 @@ from scipy.sparse import csr_array
 
 from planning.views.camera import Camera, Lens, standoff_m
 from planning.views.cover import fewest_photos
+from planning.views.coverage import ComponentCoverage, Coverage, by_component, coverage_of
 from planning.views.keep_out import KeepOut
 from planning.views.limits import DetailRules, Limits, limits_of
+from planning.views.site import TowerSite
 from planning.views.solids import Component, FloatArray, Patches, Solid, patches_of
+from planning.views.view_flight import NO_PHOTO, ViewFlight, view_flight
 from planning.views.visibility import Poses, RayCaster, aim_at, in_frame, line_of_sight
 
 BoolArray = NDArray[np.bool_]
@@ -25,11 +28,13 @@ MIN_COSINE = 0.2  # of a pitch, by which steps of yaw are widened
 CUBES_M = (1.5, 0.5)  # sides of cubes with one place each, of those from where patches can be seen that no candidate sees
 MAX_PHOTOS, MAX_CANDIDATES = 200, 15_000
 SEED = 33  # of the order in which positions are looked at, where there are too many for all
-LITTLE = 0.1  # of a surface that can be shown: then it is looked at on smaller patches
-MUCH = 0.2  # of what the photo shows that shows the most
+MIN_REACHABLE_SHARE = 0.1  # of a surface that can be shown: below, it is looked at on smaller patches
+MIN_SHOWN_SHARE = 0.2  # of what the photo shows that shows the most: below, a photo is weighed only where it alone shows a patch
+PROOF_PATCH_M = 1.0  # sides of patches on which coverage is told
+ENTRY_ABOVE_M = 2.0  # the keep-out over the tower
 REACH_M = 80.0  # from the asset's axis, of candidate positions
 LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
-ENOUGH = 0.99  # of what the longest focal length reaches, for a shorter one to do
+MIN_LENS_SHARE = 0.99  # of what the longest focal length reaches, for a shorter one to do
 
 
 class TooManyPhotos(ValueError):
@@ -40,7 +45,7 @@ class TooManyPhotos(ValueError):
 class DetailViews:
     """Poses of photos, the lens they are taken with, what they show (photos, patches), and why other patches cannot be shown.
 
-    bound: no choice shows enough with fewer photos, among the candidates that were weighed (see _worthwhile).
+    bound: no choice shows enough with fewer photos, among the candidates that were weighed (see _weighed).
     """
 
     poses: Poses
@@ -52,18 +57,23 @@ class DetailViews:
     candidates: int = field(default=0)
 
 
+def reach_m(camera: Camera, asked_gsd_m: float) -> float:
+    """The distance [m] up to which places are looked at: where the longest focal length reaches the GSD, at most REACH_M."""
+    return min(standoff_m(camera, asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
+
+
 def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailRules) -> DetailViews:
     """Return the fewest photos found that show the solid, which stands at the origin of its frame.
 
     Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance.
     """
     caster = RayCaster([solid])
-    farthest_m = min(standoff_m(camera, rules.asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
+    farthest_m = reach_m(camera, rules.asked_gsd_m)
     for patch_m in (float(np.clip(float(solid.box[1][2]) / PATCHES_HIGH, MIN_PATCH_M, MAX_PATCH_M)), MIN_PATCH_M):
         patches = patches_of(solid, patch_m)
         limits = limits_of(patches, keep_out, caster, camera, farthest_m)
         reachable_m2 = float(patches.area_m2[limits.limit == 0].sum())
-        if reachable_m2 >= LITTLE * float(patches.area_m2.sum()):
+        if reachable_m2 >= MIN_REACHABLE_SHARE * float(patches.area_m2.sum()):
             break
     if reachable_m2 > MAX_PHOTOS * camera.pixels_wide * camera.pixels_high * rules.asked_gsd_m**2:
         raise TooManyPhotos
@@ -81,6 +91,53 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
     kind = np.array([list(Component).index(kind) for kind, _ in solid.components])[patches.component]
     cover = fewest_photos(shows, patches.area_m2, kind, rules.share)
     return DetailViews(photos.only(cover.chosen), lens, patches, shows[cover.chosen], limits, cover.bound, len(photos))
+
+
+@dataclass(frozen=True)
+class DetailSpeeds:
+    """How a UAV flies from photo to photo: m/s along and up or down, and seconds at each photo to stop, turn, settle and take it."""
+
+    along_mps: float = 4.0
+    vertical_mps: float = 2.0
+    photo_s: float = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class DetailPlan:
+    """Photos in the order flown. bound: see DetailViews. seconds: from the entry over the tower back to it."""
+
+    poses: Poses
+    lens: Lens
+    flight: ViewFlight
+    coverage: Coverage
+    components: tuple[ComponentCoverage, ...]
+    bound: int
+    seconds: float
+
+
+def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: DetailSpeeds) -> DetailPlan:
+    """Plan photos of the site's tower. Raises TooManyPhotos, or NoWay where the flight over the wires would be too high."""
+    views = detail_views(site.solid, site.keep_out, camera, rules)
+    entry = np.array([0.0, 0.0, site.keep_out.top_at(np.zeros(2)) + ENTRY_ABOVE_M])
+    flight = view_flight(views.poses, site.keep_out, entry, entry)
+    order = flight.photo[flight.photo != NO_PHOTO]
+    poses = views.poses.only(order)
+    renumbered = np.full(len(flight), NO_PHOTO)
+    renumbered[flight.photo != NO_PHOTO] = np.arange(len(order))
+    patches, caster = patches_of(site.solid, PROOF_PATCH_M), RayCaster([site.solid])
+    farthest_m = reach_m(camera, rules.asked_gsd_m)
+    limits = limits_of(patches, site.keep_out, caster, camera, farthest_m)
+    coverage = coverage_of(poses, views.lens, camera, patches, caster, limits.limit)
+    return DetailPlan(
+        poses, views.lens, ViewFlight(flight.position, renumbered), coverage, by_component(site.solid, coverage), views.bound,
+        _seconds(flight.position, len(poses), speeds),
+    )  # fmt: skip
+
+
+def _seconds(position: FloatArray, photos: int, speeds: DetailSpeeds) -> float:
+    change = np.abs(np.diff(position, axis=0))
+    along_s = np.hypot(change[:, 0], change[:, 1]) / speeds.along_mps
+    return float(np.maximum(along_s, change[:, 2] / speeds.vertical_mps).sum()) + photos * speeds.photo_s
 
 
 def candidate_positions(solid: Solid, keep_out: KeepOut, farthest_m: float) -> FloatArray:
@@ -152,7 +209,7 @@ def _lens(camera: Camera, rules: DetailRules, positions: FloatArray, patches: Pa
 
     longest_mm = camera.focal_lengths_mm[-1]
     most_m2 = seen_m2(longest_mm)
-    enough = (own for own in camera.focal_lengths_mm if most_m2 > 0.0 and seen_m2(own) >= ENOUGH * most_m2)
+    enough = (own for own in camera.focal_lengths_mm if most_m2 > 0.0 and seen_m2(own) >= MIN_LENS_SHARE * most_m2)
     focal_mm = next(enough, longest_mm)
     return Lens(focal_mm, nearest_m, standoff_m(camera, rules.asked_gsd_m, focal_mm))
 
@@ -188,15 +245,15 @@ def _photos(positions: FloatArray, patches: Patches, sight: BoolArray, camera: C
     if not places:
         return Poses(positions[:0], np.zeros(0), np.zeros(0)), np.zeros((0, len(patches)), dtype=bool)
     shows = np.concatenate(rows)
-    kept = _worthwhile(shows, patches.area_m2)
+    kept = _weighed(shows, patches.area_m2)
     poses = Poses(positions[places], np.concatenate(yaws), np.concatenate(pitches))
     return poses.only(kept), shows[kept]
 
 
-def _worthwhile(shows: BoolArray, area_m2: FloatArray) -> BoolArray:
+def _weighed(shows: BoolArray, area_m2: FloatArray) -> BoolArray:
     """Photos that show much, and for patches that none of them shows the one that shows the most."""
     shown_m2 = np.asarray(csr_array(shows) @ area_m2)
-    kept: BoolArray = shown_m2 >= MUCH * shown_m2.max()
+    kept: BoolArray = shown_m2 >= MIN_SHOWN_SHARE * shown_m2.max()
     order = np.argsort(-shown_m2, kind="stable")
     for patch in np.flatnonzero(~shows[kept].any(axis=0) & shows.any(axis=0)).tolist():
         kept[order[shows[order, patch].argmax()]] = True
