@@ -11,8 +11,7 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter
 
 from inspection.exporters.geopackage import write_geopackage
-from inspection.exporters.rows import Columns, ExportRow
-from inspection.exporters.text_files import csv_pieces, geojson_pieces
+from inspection.exporters.rows import Columns, ExportRow, rows_as_csv, rows_as_geojson
 
 MAX_EXPORTED = 200_000  # as many as a file may bring in
 MEDIA_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json", "gpkg": "application/geopackage+sqlite3"}
@@ -28,7 +27,7 @@ def file_response(rows: Iterator[ExportRow], columns: Columns, ending: str, stem
             write_geopackage(path, rows, columns, timezone.now())
             response = FileResponse(path.open("rb"), content_type=MEDIA_TYPES[ending])  # an open file outlives its name
     else:
-        pieces = csv_pieces if ending == "csv" else geojson_pieces
+        pieces = rows_as_csv if ending == "csv" else rows_as_geojson
         response = StreamingHttpResponse(pieces(rows, columns), content_type=MEDIA_TYPES[ending])
     response["Content-Disposition"] = f'attachment; filename="{stem}.{ending}"'
     response["Cache-Control"] = "private, no-cache"

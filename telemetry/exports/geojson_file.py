@@ -4,9 +4,8 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from inspection.exporters.text_pieces import collection_pieces
 from telemetry.exports.logged_record import FLAGS, REPORTED, LoggedRecord, time_text
-
-FEATURES_A_PIECE = 200
 
 
 def record_feature(record: LoggedRecord) -> dict[str, Any]:
@@ -29,13 +28,5 @@ def record_feature(record: LoggedRecord) -> dict[str, Any]:
     return {"type": "Feature", "id": record.id, "geometry": geometry, "properties": properties}
 
 
-def geojson_pieces(records: Iterable[LoggedRecord]) -> Iterator[str]:
-    written: list[str] = []
-    before = '{"type":"FeatureCollection","features":['
-    for record in records:
-        written.append(json.dumps(record_feature(record), separators=(",", ":"), ensure_ascii=False))
-        if len(written) == FEATURES_A_PIECE:
-            yield before + ",".join(written)
-            written.clear()
-            before = ","
-    yield (before if written or before != "," else "") + ",".join(written) + "]}"
+def geojson_of_records(records: Iterable[LoggedRecord]) -> Iterator[str]:
+    return collection_pieces(json.dumps(record_feature(record), separators=(",", ":"), ensure_ascii=False) for record in records)

@@ -7,7 +7,7 @@ from io import BytesIO, StringIO
 
 import xlsxwriter
 
-from inspection.exporters.spreadsheet_cells import without_formula
+from inspection.exporters.text_pieces import without_formula
 from telemetry.exports.logged_record import time_text
 from telemetry.exports.results import MissionResults, ResultRow
 

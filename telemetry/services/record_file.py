@@ -12,8 +12,8 @@ from django.core.serializers.json import DjangoJSONEncoder
 
 from missions.models import Mission
 from missions.selectors.commands import commands_of_mission
-from telemetry.exports.csv_file import csv_pieces
-from telemetry.exports.geojson_file import geojson_pieces
+from telemetry.exports.csv_file import csv_of_records
+from telemetry.exports.geojson_file import geojson_of_records
 from telemetry.exports.thinning import rounded
 from telemetry.models import Alert, FlightLog, PositionEstimate
 from telemetry.selectors.columns import latitude, longitude
@@ -53,8 +53,8 @@ def record_file(organisation: Organisation, mission: Mission) -> IO[bytes]:
         if approval is not None:
             packed.writestr("approval.json", _json({"content_sha256": approval.content_sha256, "document": approval.document}))
         if records.exists():
-            _write(packed, "telemetry.csv", csv_pieces(map(rounded, logged(records, "measured_at", "pk"))))
-            _write(packed, "telemetry.geojson", geojson_pieces(map(rounded, logged(records, "measured_at", "pk"))))
+            _write(packed, "telemetry.csv", csv_of_records(map(rounded, logged(records, "measured_at", "pk"))))
+            _write(packed, "telemetry.geojson", geojson_of_records(map(rounded, logged(records, "measured_at", "pk"))))
         if PositionEstimate.objects.filter(mission=mission).exists():
             _write(packed, "estimates.jsonl", _estimates(mission))
         packed.writestr("alerts.json", _json(_alerts(mission)))

@@ -16,8 +16,8 @@ from rest_framework.views import APIView
 from inspection.views.parameters import invalid
 from missions.models import Mission
 from missions.views.uavs import uav_or_404
-from telemetry.exports.csv_file import csv_pieces
-from telemetry.exports.geojson_file import geojson_pieces
+from telemetry.exports.csv_file import csv_of_records
+from telemetry.exports.geojson_file import geojson_of_records
 from telemetry.exports.gpx_file import gpx_pieces
 from telemetry.exports.kml_file import kml_pieces
 from telemetry.exports.logged_record import LoggedRecord
@@ -44,12 +44,12 @@ class ExportFormat(NamedTuple):
 
 
 KINDS = {
-    "csv": ExportFormat("text/csv; charset=utf-8", BY_TIME, lambda records, name: csv_pieces(records)),
+    "csv": ExportFormat("text/csv; charset=utf-8", BY_TIME, lambda records, name: csv_of_records(records)),
     "gpx": ExportFormat("application/gpx+xml", BY_STREAM, lambda records, name: gpx_pieces(records, name=name), is_track=True),
     "kml": ExportFormat(
         "application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name), is_track=True
     ),
-    "geojson": ExportFormat("application/geo+json", BY_TIME, lambda records, name: geojson_pieces(records)),
+    "geojson": ExportFormat("application/geo+json", BY_TIME, lambda records, name: geojson_of_records(records)),
 }
 ABOUT = (
     "One record a second of each UAV, and each with which its mode or waypoint changes; `every_s` asks for more or fewer. Values are "

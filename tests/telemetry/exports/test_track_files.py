@@ -13,8 +13,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from telemetry.exports.csv_file import COLUMNS, csv_pieces
-from telemetry.exports.geojson_file import geojson_pieces
+from telemetry.exports.csv_file import COLUMNS, csv_of_records
+from telemetry.exports.geojson_file import geojson_of_records
 from telemetry.exports.gpx_file import NAMESPACE, OWN_NAMESPACE, gpx_pieces
 from telemetry.exports.kml_file import GX_NAMESPACE, POINTS_A_PART, kml_pieces
 from telemetry.exports.kml_file import NAMESPACE as KML_NAMESPACE
@@ -24,8 +24,8 @@ from telemetry.exports.thinning import for_files, rounded
 START = datetime(2026, 11, 22, 12, tzinfo=UTC)
 Pieces = Callable[[Iterable[LoggedRecord]], Iterator[str]]
 KINDS: dict[str, Pieces] = {
-    "csv": csv_pieces,
-    "geojson": geojson_pieces,
+    "csv": csv_of_records,
+    "geojson": geojson_of_records,
     "gpx": lambda records: gpx_pieces(records, name="Bexley & co"),
     "kml": lambda records: kml_pieces(records, name="Bexley & co"),
 }
