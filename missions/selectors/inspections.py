@@ -2,21 +2,21 @@
 
 from typing import TYPE_CHECKING, TypedDict
 
-from django.db.models import Count, Exists, IntegerField, OuterRef, QuerySet, Subquery, Value
+from django.db.models import QuerySet
 from django.db.models.functions import Coalesce
 
 from inspection.models import Asset, AssetKind
 from inspection.selectors.picking import supports_of_line
-from missions.models import InspectionTarget, Mission, MissionUav, TargetState
+from missions.models import InspectionTarget, Mission, TargetState
+from missions.selectors.mission_list import count_of, with_simulated_uav
 
 
 def inspections_of_assets(organisation_id: int) -> QuerySet[InspectionTarget]:
     """Return an organisation's completed targets with `inspected_at`; missions with simulated UAVs inspect nothing."""
-    simulated = MissionUav.objects.filter(mission=OuterRef("mission"), uav__is_simulated=True)
     done = InspectionTarget.objects.filter(
         mission__organisation=organisation_id, mission__deleted_at=None, state=TargetState.COMPLETE, asset__isnull=False
     )
-    return done.filter(~Exists(simulated)).annotate(inspected_at=Coalesce("reached_at", "state_at"))
+    return done.filter(~with_simulated_uav("mission")).annotate(inspected_at=Coalesce("reached_at", "state_at"))
 
 
 class InspectedCounts(TypedDict):
@@ -38,12 +38,10 @@ else:
 def missions_of_asset(organisation_id: int, asset: Asset) -> QuerySet[MissionOfAsset]:
     """Return missions with targets at the asset or, of a line, at its supports, and the number of these targets."""
     keys = (asset.pk, *(supports_of_line(asset) if asset.kind == AssetKind.LINE else ()))
-    here = InspectionTarget.objects.filter(mission=OuterRef("pk"), asset__in=keys).order_by().values("mission")
-    count = here.annotate(count=Count("pk")).values("count")
-    done = here.filter(state=TargetState.COMPLETE).annotate(count=Count("pk")).values("count")
+    targets = InspectionTarget.objects.filter(asset__in=keys)
     missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None)
     return missions.annotate(
-        target_count=Coalesce(Subquery(count), Value(0), output_field=IntegerField()),
-        inspected_count=Coalesce(Subquery(done), Value(0), output_field=IntegerField()),
-        is_simulated=Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav__is_simulated=True)),
+        target_count=count_of(targets),
+        inspected_count=count_of(targets.filter(state=TargetState.COMPLETE)),
+        is_simulated=with_simulated_uav("pk"),
     ).filter(target_count__gt=0)

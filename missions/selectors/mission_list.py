@@ -78,9 +78,15 @@ class MissionFilter:
     is_deleted: bool | None = False  # None: either
 
 
-def _count_of(rows: QuerySet[Any]) -> Coalesce:
+def count_of(rows: QuerySet[Any]) -> Coalesce:
+    """Return the number of these rows that belong to a mission, as an annotation of missions."""
     counted = rows.filter(mission=OuterRef("pk")).order_by().values("mission").annotate(number=Count("pk")).values("number")
     return Coalesce(Subquery(counted, output_field=IntegerField()), 0)
+
+
+def with_simulated_uav(mission: str) -> Exists:
+    """Return whether a simulated UAV flies the mission in this column of the outer query."""
+    return Exists(MissionUav.objects.filter(mission=OuterRef(mission), uav__is_simulated=True))
 
 
 def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet[Mission]:
@@ -138,10 +144,10 @@ def mission_rows(missions: QuerySet[Mission]) -> QuerySet[ListedMission]:
     return (
         missions.select_related("author")
         .annotate(
-            target_count=_count_of(InspectionTarget.objects.all()),
-            unassigned_count=_count_of(InspectionTarget.objects.exclude(unassigned_reason="")),
-            uav_count=_count_of(MissionUav.objects.all()),
-            is_simulated=Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav__is_simulated=True)),
+            target_count=count_of(InspectionTarget.objects.all()),
+            unassigned_count=count_of(InspectionTarget.objects.exclude(unassigned_reason="")),
+            uav_count=count_of(MissionUav.objects.all()),
+            is_simulated=with_simulated_uav("pk"),
             duration_s=Subquery(last_end, output_field=FloatField()),
             # Aliases as real fields: a page's cursor reads these values, not those of the columns they are made from.
             sort_name=Lower("name", output_field=CharField()),

@@ -44,17 +44,9 @@ class AssetMissions(APIView):
         if asset is None:
             raise Http404
         page = page_of(request, missions_of_asset(request.user.organisation_id, asset), order=("-created_at", "-pk"), default_limit=20)
-        return Response({"results": [mission_json(row) for row in page.rows], "next": page.next})
+        return Response({"results": [_mission_json(row) for row in page.rows], "next": page.next})
 
 
-def mission_json(row: MissionOfAsset) -> dict[str, Any]:
-    return {
-        "id": str(row.pk),
-        "name": row.name,
-        "state": row.state,
-        "is_simulated": row.is_simulated,
-        "departs_at": row.departs_at,
-        "created_at": row.created_at,
-        "target_count": row.target_count,
-        "inspected_count": row.inspected_count,
-    }
+def _mission_json(row: MissionOfAsset) -> dict[str, Any]:
+    names = ("name", "state", "is_simulated", "departs_at", "created_at", "target_count", "inspected_count")
+    return {"id": str(row.pk)} | {name: getattr(row, name) for name in names}
