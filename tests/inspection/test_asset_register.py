@@ -95,6 +95,7 @@ def test_last_inspections_are_of_aircraft_of_the_own_organisation_that_completed
     inspect(curator, new, now - timedelta(days=9))
     inspect(curator, simulated, now, simulated=True)
     inspect(curator, failed, now, state=TargetState.FAILED)
+    inspect(a_user(Role.OPERATOR, organisation=Organisation.objects.create(name="Other")), foreign, now)
     year_ago = (now - timedelta(days=365)).date().isoformat()
     assert ids(client, "inspected=true") == [old.pk, new.pk]
     assert ids(client, "inspected=false") == [simulated.pk, failed.pk, foreign.pk]
