@@ -1,6 +1,7 @@
 """Assets as GeoJSON features."""
 
 import json
+from datetime import datetime
 from typing import Any
 
 from rest_framework import serializers
@@ -8,7 +9,6 @@ from rest_framework import serializers
 from inspection.models import AssetKind, AssetReference
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.assets import DrawnAsset
-from inspection.selectors.register.assets import RegisterFacts
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
 from workspace.api.external_data import AttributesField
 from workspace.jobs.serializers import Declared
@@ -60,13 +60,13 @@ FIELDS_OF_AN_ASSET = (
     "kind", "subtype", "osm_type", "osm_id", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m",
     "length_m", "is_flyable", "carries", "place_on_line", "places_on_line", "updated_at",
     "line__kind", "line__subtype", "line__osm_type", "line__osm_id", "line__ref", "line__name", "line__operator", "line__max_voltage_v",
-    "line__line",
+    "line__line", "data_import__region",
 )  # fmt: skip
 
 
-def asset_feature(asset: DrawnAsset, reference: AssetReference | None, facts: RegisterFacts) -> dict[str, Any]:
-    """Return the feature. `asset` has `geometry_json` from inspection.selectors; the others are of the reader's organisation."""
-    properties = {
+def asset_properties(asset: DrawnAsset, reference: AssetReference | None, inspected_at: datetime | None) -> dict[str, Any]:
+    """Return the properties of the feature. `reference` and `inspected_at` are of the reader's organisation."""
+    return {
         "kind": asset.kind,
         "subtype": asset.subtype,
         "label": asset_label(asset),
@@ -82,18 +82,23 @@ def asset_feature(asset: DrawnAsset, reference: AssetReference | None, facts: Re
         "is_flyable": asset.is_flyable,
         "line": asset.line_id,
         "line_label": asset_label(asset.line) if asset.line is not None else "",
-        "region": facts.region,
-        "inspected_at": facts.inspected_at,
+        "region": asset.data_import and asset.data_import.region_id,
+        "inspected_at": inspected_at,
         "updated_at": asset.updated_at,
         "centre": [asset.centre.x, asset.centre.y],
         "external_id": reference.external_id if reference else "",
         "attributes": reference.attributes if reference else {},
     }
+
+
+def asset_feature(asset: DrawnAsset, reference: AssetReference | None, inspected_at: datetime | None) -> dict[str, Any]:
+    """Return the feature. `asset` has `geometry_json` from inspection.selectors."""
+    properties = asset_properties(asset, reference, inspected_at)
     return {"type": "Feature", "id": asset.pk, "geometry": json.loads(asset.geometry_json), "properties": properties}
 
 
-def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None, facts: RegisterFacts) -> dict[str, Any]:
-    feature = asset_feature(asset, reference, facts)
+def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None, inspected_at: datetime | None) -> dict[str, Any]:
+    feature = asset_feature(asset, reference, inspected_at)
     feature["properties"] |= {
         "tags": asset.tags,
         "revision": asset.revision,

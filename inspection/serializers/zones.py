@@ -165,10 +165,10 @@ ZoneDetailFeatureSerializer = feature_serializer("ZoneDetailFeature", ZoneDetail
 ZoneCollectionSerializer = collection_serializer("ZoneCollection", ZoneFeatureSerializer)
 
 
-def zone_feature(zone: DrawnZone) -> dict[str, Any]:
+def zone_properties(zone: DrawnZone) -> dict[str, Any]:
     box = (-180.0, -90.0, 180.0, 90.0) if zone.schedule is None else shapely.from_geojson(zone.geometry_json).bounds
     activity = activity_of(zone.schedule, box, timezone.now())
-    properties = {
+    return {
         "name": zone.name,
         "identifier": zone.identifier,
         "layer": zone.layer,
@@ -186,7 +186,10 @@ def zone_feature(zone: DrawnZone) -> dict[str, Any]:
         "updated_at": zone.updated_at,
         "source": source_json(zone.zone_set.data_import if zone.zone_set else None),
     }
-    return {"type": "Feature", "id": zone.pk, "geometry": json.loads(zone.geometry_json), "properties": properties}
+
+
+def zone_feature(zone: DrawnZone) -> dict[str, Any]:
+    return {"type": "Feature", "id": zone.pk, "geometry": json.loads(zone.geometry_json), "properties": zone_properties(zone)}
 
 
 def zone_detail_feature(zone: DrawnZone) -> dict[str, Any]:

@@ -13,8 +13,8 @@ from rest_framework.views import APIView
 from inspection.exporters.rows import Columns, ExportRow
 from inspection.models import Asset, AssetKind
 from inspection.selectors import references_of
-from inspection.selectors.register.assets import AssetFilter, RegisterFacts, assets_that_match, counts_that_match, register_facts
-from inspection.serializers.assets import FIELDS_OF_AN_ASSET, asset_feature
+from inspection.selectors.register.assets import AssetFilter, assets_that_match, counts_that_match, last_inspections
+from inspection.serializers.assets import FIELDS_OF_AN_ASSET, asset_properties
 from inspection.serializers.register import (
     MAX_BULK,
     AssetCountsSerializer,
@@ -92,9 +92,9 @@ def _rows(wanted: AssetFilter) -> Iterator[ExportRow]:
     found = assets_that_match(wanted).only(*FIELDS_OF_AN_ASSET).order_by("kind", "pk").iterator(BATCH)
     while batch := list(islice(found, BATCH)):
         keys = [asset.pk for asset in batch]
-        references, facts = references_of(wanted.organisation_id, keys), register_facts(wanted.organisation_id, keys)
+        references, inspected = references_of(wanted.organisation_id, keys), last_inspections(wanted.organisation_id, keys)
         for asset in batch:
-            values = asset_feature(asset, references.get(asset.pk), facts.get(asset.pk, RegisterFacts()))["properties"]
+            values = asset_properties(asset, references.get(asset.pk), inspected.get(asset.pk))
             inspected_at = values["inspected_at"]
             stated = {name: values[name] for name in COLUMNS} | {
                 "voltages_v": ";".join(map(str, values["voltages_v"])),

@@ -10,7 +10,7 @@ from rest_framework.views import APIView
 from inspection import selectors
 from inspection.models import Asset, AssetKind
 from inspection.selectors.assets import DrawnAsset
-from inspection.selectors.register.assets import RegisterFacts, assets_that_match, in_order, register_facts
+from inspection.selectors.register.assets import assets_that_match, in_order, last_inspections
 from inspection.serializers.assets import (
     FIELDS_OF_AN_ASSET,
     AssetCollectionSerializer,
@@ -74,8 +74,8 @@ class AssetList(APIView):
             assets, order = with_match_rank(assets, text=wanted.text), BEST_FIRST
         page = page_of(request, assets, order=order)
         keys = [asset.pk for asset in page.rows]
-        references, facts = selectors.references_of(organisation, keys), register_facts(organisation, keys)
-        features = [asset_feature(asset, references.get(asset.pk), facts.get(asset.pk, RegisterFacts())) for asset in page.rows]
+        references, inspected = selectors.references_of(organisation, keys), last_inspections(organisation, keys)
+        features = [asset_feature(asset, references.get(asset.pk), inspected.get(asset.pk)) for asset in page.rows]
         total = {"total": found.count()} if asked_flag(request, "total") else {}
         return Response({"type": "FeatureCollection", "features": features, "next": page.next} | total)
 

@@ -15,7 +15,7 @@ from rest_framework.serializers import Serializer
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import asset_with_geometry, references_of, zones
 from inspection.selectors.history import NEWEST_FIRST, changes_of
-from inspection.selectors.register.assets import register_facts
+from inspection.selectors.register.assets import last_inspections
 from inspection.serializers.assets import asset_detail_feature
 from inspection.serializers.zones import zone_detail_feature
 from inspection.services import StaleRevision, WrongGeometry
@@ -109,7 +109,7 @@ def asset_now(user: User, asset_id: int) -> dict[str, Any] | None:
     except Asset.DoesNotExist:
         return None
     organisation, keys = user.organisation_id, [asset_id]
-    return asset_detail_feature(asset, references_of(organisation, keys).get(asset_id), register_facts(organisation, keys)[asset_id])
+    return asset_detail_feature(asset, references_of(organisation, keys).get(asset_id), last_inspections(organisation, keys).get(asset_id))
 
 
 def zone_now(user: User, zone_id: int) -> dict[str, Any] | None:

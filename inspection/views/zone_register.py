@@ -15,7 +15,7 @@ from inspection.exporters.rows import Columns, ExportRow
 from inspection.models import ZoneSet
 from inspection.selectors.register.zones import ZoneFilter, zone_counts, zones_that_match
 from inspection.serializers.register import ZoneCountsSerializer
-from inspection.serializers.zones import zone_feature
+from inspection.serializers.zones import zone_properties
 from inspection.views.export_files import FILES, FORMAT, MAX_EXPORTED, file_response
 from inspection.views.register_filters import ZONE_FILTERS, zone_filter
 from workspace.api.errors import ApiProblem
@@ -74,7 +74,7 @@ class ZoneFile(APIView):
 
 def _rows(wanted: ZoneFilter) -> Iterator[ExportRow]:
     for zone in zones_that_match(wanted).order_by("pk")[:MAX_EXPORTED].iterator(BATCH):
-        values = zone_feature(zone)["properties"]
+        values = zone_properties(zone)
         limits = {
             f"{side}_{name}": (values[f"{side}_limit"] or {}).get(key)
             for side in ("lower", "upper")

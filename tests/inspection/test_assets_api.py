@@ -241,11 +241,11 @@ def test_a_list_reads_all_lines_of_its_supports_at_once(client: Client, django_a
     for place in range(1, 6):
         tower((10.0 + place / 100, 56.0), line=line(operator="AEP", voltages_v=[138_000]), place_on_line=place, places_on_line=9)
     client.get("/api/v1/account")  # once a minute it is noted that somebody was here
-    with django_assert_num_queries(6):  # session, user, assets, what the organisation keeps with them, inspections, regions
+    with django_assert_num_queries(5):  # session, user, assets, what the organisation keeps with them, inspections
         answer = client.get("/api/v1/assets?kind=tower").json()
     names = [(feature["properties"]["label"], feature["properties"]["detail"]) for feature in answer["features"]]
     assert names == [(f"Tower {place} of 9", "138 kV AEP") for place in range(1, 6)]
-    with django_assert_num_queries(6):
+    with django_assert_num_queries(5):
         client.get(f"/api/v1/assets/{answer['features'][0]['id']}")
 
 

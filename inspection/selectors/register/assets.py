@@ -70,8 +70,9 @@ class AssetCounts:
 
 
 def assets_that_match(wanted: AssetFilter) -> QuerySet[DrawnAsset]:
-    """Return assets with their geometry as GeoJSON text in `geometry_json`."""
+    """Return assets with their geometry as GeoJSON text in `geometry_json`, their line and their import."""
     assets = assets_on_the_ground(box=wanted.box, kinds=list(wanted.kinds), text=wanted.text, flyable=wanted.flyable)
+    assets = assets.select_related("line", "data_import")
     if wanted.external_id:
         assets = with_external_id(assets, wanted.organisation_id, wanted.external_id)
     if wanted.voltages_v:
@@ -98,20 +99,10 @@ def _inspected(assets: QuerySet[DrawnAsset], wanted: AssetFilter) -> QuerySet[Dr
     return assets
 
 
-@dataclass(frozen=True)
-class RegisterFacts:
-    """What the register shows of an asset beside its own row."""
-
-    region: int | None = None
-    inspected_at: datetime | None = None
-
-
-def register_facts(organisation_id: int, assets: Collection[int]) -> dict[int, RegisterFacts]:
-    """Return the facts of these assets by key, with two queries."""
+def last_inspections(organisation_id: int, assets: Collection[int]) -> dict[int, datetime]:
+    """Return when those of these assets that were ever inspected were inspected last, by key."""
     rows = inspections_of(organisation_id).filter(asset__in=assets).order_by()
-    inspected = dict(rows.values_list("asset").annotate(last=Max("inspected_at")))
-    regions = Asset.objects.filter(pk__in=assets).order_by().values_list("pk", "data_import__region")
-    return {key: RegisterFacts(region, inspected.get(key)) for key, region in regions}
+    return dict(rows.values_list("asset").annotate(last=Max("inspected_at")))
 
 
 def _last_inspection(organisation_id: int) -> Case:
