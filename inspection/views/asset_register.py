@@ -24,7 +24,7 @@ from inspection.serializers.register import (
     BulkUndoSerializer,
 )
 from inspection.services.bulk_edits import change_assets, undo_changes
-from inspection.views.export_files import FILES, FORMAT, MAX_EXPORTED, file_response
+from inspection.views.export_files import FILE_ANSWERS, FORMAT, check_number, file_response
 from inspection.views.parameters import invalid
 from inspection.views.register_filters import ASSET_FILTERS, asset_filter
 from workspace.api.errors import ApiProblem
@@ -74,16 +74,15 @@ class AssetFile(APIView):
         summary="Assets that match filters, as CSV, GeoJSON or GeoPackage",
         description="CSV has a position, the others the geometry. A GeoPackage has one layer for each kind.",
         parameters=[FORMAT, *ASSET_FILTERS],
-        responses=FILES | {409: OpenApiResponse(description="Nothing or too much to export.")},
+        responses=FILE_ANSWERS,
     )
     def get(self, request: SignedInRequest, ending: str) -> HttpResponseBase:
         wanted = asset_filter(request)
-        count = assets_that_match(wanted).order_by()[: MAX_EXPORTED + 1].count()
-        if count == 0:
-            raise ApiProblem(409, "nothing_found", _("No asset matches: there is nothing to export."))
-        if count > MAX_EXPORTED:
-            most = {"most": f"{MAX_EXPORTED:,}"}
-            raise ApiProblem(409, "too_many", _("More than %(most)s assets match. Narrow the filters, such as by region.") % most)
+        check_number(
+            assets_that_match(wanted),
+            none=_("No asset matches: there is nothing to export."),
+            too_many=_("More than %(most)s assets match. Narrow the filters, such as by region."),
+        )
         return file_response(_rows(wanted), COLUMNS, ending, "assets")
 
 

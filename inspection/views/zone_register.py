@@ -6,7 +6,7 @@ from typing import Any
 import shapely
 from django.http import HttpResponseBase
 from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiResponse, extend_schema
+from drf_spectacular.utils import extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -16,9 +16,8 @@ from inspection.models import ZoneSet
 from inspection.selectors.register.zones import ZoneFilter, zone_counts, zones_that_match
 from inspection.serializers.register import ZoneCountsSerializer
 from inspection.serializers.zones import zone_properties
-from inspection.views.export_files import FILES, FORMAT, MAX_EXPORTED, file_response
+from inspection.views.export_files import FILE_ANSWERS, FORMAT, check_number, file_response
 from inspection.views.register_filters import ZONE_FILTERS, zone_filter
-from workspace.api.errors import ApiProblem
 from workspace.api.renderers import OneAnswer
 
 COLUMNS: Columns = {
@@ -63,17 +62,20 @@ class ZoneFile(APIView):
         summary="Zones that match filters, as CSV, GeoJSON or GeoPackage",
         description="CSV has a position, the others the geometry. Limits are in metres; empty ones are not stated.",
         parameters=[FORMAT, *ZONE_FILTERS],
-        responses=FILES | {409: OpenApiResponse(description="Nothing to export.")},
+        responses=FILE_ANSWERS,
     )
     def get(self, request: Request, ending: str) -> HttpResponseBase:
         wanted = zone_filter(request)
-        if not zones_that_match(wanted).exists():
-            raise ApiProblem(409, "nothing_found", _("No zone matches: there is nothing to export."))
+        check_number(
+            zones_that_match(wanted),
+            none=_("No zone matches: there is nothing to export."),
+            too_many=_("More than %(most)s zones match. Narrow the filters, such as by set."),
+        )
         return file_response(_rows(wanted), COLUMNS, ending, "zones")
 
 
 def _rows(wanted: ZoneFilter) -> Iterator[ExportRow]:
-    for zone in zones_that_match(wanted).order_by("pk")[:MAX_EXPORTED].iterator(BATCH):
+    for zone in zones_that_match(wanted).order_by("pk").iterator(BATCH):
         values = zone_properties(zone)
         limits = {
             f"{side}_{name}": (values[f"{side}_limit"] or {}).get(key)

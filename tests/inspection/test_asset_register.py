@@ -18,9 +18,10 @@ from inspection.models import Asset, DataImport
 from inspection.selectors import ground_revision
 from inspection.services.ground import number_supports
 from inspection.services.imports.regions import join_region
+from inspection.views import export_files
 from missions.models import InspectionTarget, Mission, MissionUav, TargetState, Uav
 from tests.accounts.users import a_user, client_of
-from tests.inspection.ground import bridge, line, railway, tower
+from tests.inspection.ground import bridge, line, railway, tower, zone
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -218,6 +219,16 @@ def test_nothing_to_export_is_said(client: Client) -> None:
     answer = client.get("/api/v1/assets/export.gpkg")
     assert (answer.status_code, answer.json()["error"]["code"]) == (409, "nothing_found")
     assert client.get("/api/v1/assets/export.exe").status_code == 404
+
+
+def test_more_than_a_file_may_have_is_refused(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(export_files, "MAX_EXPORTED", 1)
+    for add, path in ((tower, "assets/export.csv"), (zone, "zones/export.csv")):
+        add()
+        assert client.get(f"/api/v1/{path}").status_code == 200
+        add()
+        answer = client.get(f"/api/v1/{path}")
+        assert (answer.status_code, answer.json()["error"]["code"]) == (409, "too_many")
 
 
 # Edits
