@@ -28,11 +28,7 @@ def join_region(data_import: DataImport) -> Region | None:
     elif data_import.kind in OF_ASSETS and _has_name_of_zones_or_terrain(region):
         region.name = _free_name(data_import, extent, but=region)
         region.save(update_fields=["name"])
-    data_import.region = region
-    data_import.save(update_fields=["region"])
-    region.extent = Polygon.from_bbox(_around(region.extent.extent, extent))
-    region.save(update_fields=["extent"])
-    fit_regions([region.pk])
+    _add(data_import, extent, region)
     return region
 
 
@@ -47,13 +43,20 @@ def put_into_region(data_import: DataImport, name: str) -> None:
     region, _is_new = Region.objects.get_or_create(name=name, defaults={"extent": Polygon.from_bbox(extent)})
     if has_demo_data(region) and not data_import.is_synthetic:
         return
+    _add(data_import, extent, region)
+    if before is not None and before.imports.exists():
+        fit_regions([before.pk])
+    elif before is not None:
+        before.delete()
+
+
+def _add(data_import: DataImport, extent: Box, region: Region) -> None:
+    """Put an import with data of this extent into a region, which grows by it or fits its assets."""
     data_import.region = region
     data_import.save(update_fields=["region"])
     region.extent = Polygon.from_bbox(_around(region.extent.extent, extent))
     region.save(update_fields=["extent"])
-    if before is not None and not before.imports.exists():
-        before.delete()
-    fit_regions([region.pk, *([before.pk] if before is not None and before.pk is not None else [])])
+    fit_regions([region.pk])
 
 
 def has_demo_data(region: Region) -> bool:
