@@ -1,13 +1,23 @@
-"""What later apps add to regions: where an organisation has its bases, and what of the demo goes with its region."""
+"""Functions of later apps that this one calls: inspections of assets, bases of an organisation, and deletion of the demo's UAVs."""
 
+from typing import Any
+
+from django.db.models import QuerySet
 from django.utils.module_loading import import_string
 
 from workspace.models import User
 
 LonLat = tuple[float, float]
 
+_inspections: list[str] = []
 _bases: list[str] = []
 _deletions: list[str] = []
+
+
+def register_inspections(name: str) -> None:
+    """Register a function by its dotted name. It takes an organisation's key and returns rows with `asset` and `inspected_at`."""
+    if name not in _inspections:
+        _inspections.append(name)
 
 
 def register_bases(name: str) -> None:
@@ -20,6 +30,13 @@ def register_deletion(name: str) -> None:
     """Register a function by its dotted name. It takes a user and deletes the rest of the demo."""
     if name not in _deletions:
         _deletions.append(name)
+
+
+def inspections_of(organisation_id: int) -> QuerySet[Any]:
+    """Return one row for each inspection of an asset."""
+    (name,) = _inspections
+    rows: QuerySet[Any] = import_string(name)(organisation_id)
+    return rows
 
 
 def bases_of(organisation_id: int) -> list[LonLat]:

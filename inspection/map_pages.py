@@ -3,7 +3,7 @@
 from collections import Counter
 from typing import Any, TypedDict
 
-from inspection.region_hooks import LonLat, bases_of
+from inspection.hooks import LonLat, bases_of
 from inspection.selectors import Box, map_data
 from inspection.selectors.ground import RegionSummary, regions_in_use
 from workspace.models import User

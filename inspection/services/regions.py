@@ -7,8 +7,8 @@ from django.db import transaction
 from django.db.models import Count, F, Q, QuerySet
 from django.utils import timezone
 
+from inspection.hooks import after_deletion
 from inspection.models import Asset, AssetSet, DataImport, NoFlyZone, Region, ZoneSet
-from inspection.region_hooks import after_deletion
 from inspection.selectors.assets import Box, area_of
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
 from inspection.services.imports.regions import fit_regions, has_demo_data, lies_within

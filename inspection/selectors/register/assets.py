@@ -28,7 +28,7 @@ from django.db.models import (
 )
 from django.db.models.functions import Coalesce, NullIf, Upper
 
-from inspection.inspection_hooks import inspections_of
+from inspection.hooks import inspections_of
 from inspection.models import Asset, AssetKind
 from inspection.models.assets import LAST_NAME
 from inspection.selectors.assets import Box, DrawnAsset, assets_on_the_ground, with_external_id
