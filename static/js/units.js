@@ -139,6 +139,20 @@ export function voltageText(voltage_kv) {
   return withUnit(grouped(voltage_kv, Number.isInteger(voltage_kv) ? 0 : 1), "kV");
 }
 
+const COMPASS = [
+  t("north"),
+  t("north-east"),
+  t("east"),
+  t("south-east"),
+  t("south"),
+  t("south-west"),
+  t("west"),
+  t("north-west"),
+];
+
+/** "west" for 270. @param {number} direction_deg clockwise from north */
+export const compassText = (direction_deg) => COMPASS[Math.round((((direction_deg % 360) + 360) % 360) / 45) % 8];
+
 /**
  * Latitude comes first for readers; all code has longitude first. The decimal separator is a point in every language,
  * because the text is typed and copied.

@@ -3,7 +3,6 @@ import test from "node:test";
 import { isAlike, merged } from "../../../static/js/mission/actions/merge.js";
 import { changedParts } from "../../../static/js/mission/actions/save_request.js";
 import {
-  compassText,
   conditionsOf,
   conditionsText,
   flightOptionsAsked,
@@ -11,6 +10,7 @@ import {
   timeAt,
 } from "../../../static/js/mission/options/flight_options.js";
 import { basisOf, EMPTY, requestOf, selectionOf } from "../../../static/js/mission/selection.js";
+import { compassText } from "../../../static/js/units.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const LEAVES = "2026-11-21T18:30:00.000Z";

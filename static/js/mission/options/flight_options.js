@@ -1,7 +1,7 @@
 /** Options of a flight: departure and conditions, charging, and lost-link action. Values in, values out. */
 
 import { t } from "../../text.js";
-import { clockText, dayText, heightText, sinceText, speedText, temperatureText } from "../../units.js";
+import { clockText, compassText, dayText, heightText, sinceText, speedText, temperatureText } from "../../units.js";
 import { lostLinkOf } from "./lost_link.js";
 
 /** @import { Conditions, FlightOptions, LostLink } from "../types.d.ts" */
@@ -10,16 +10,6 @@ import { lostLinkOf } from "./lost_link.js";
 export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null, lost_link: null });
 export const MILD_C = 15; // ISA at sea level, the default
 export const MAX_LAYERS = 10; // missions/serializers/limits.py
-const COMPASS = [
-  t("north"),
-  t("north-east"),
-  t("east"),
-  t("south-east"),
-  t("south"),
-  t("south-west"),
-  t("west"),
-  t("north-west"),
-];
 
 /** @param {Conditions["wind"][number]} layer */
 const layerOf = ({ altitude_agl_m, speed_mps, from_deg }) => ({ altitude_agl_m, speed_mps, from_deg });
@@ -58,9 +48,6 @@ export const flightOptionsOf = ({ departs_at, conditions, charging_w, lost_link 
 export function flightOptionsAsked(selection) {
   return Object.fromEntries(Object.entries(flightOptionsOf(selection)).filter(([, value]) => value !== null));
 }
-
-/** "west" for 270. @param {number} from_deg */
-export const compassText = (from_deg) => COMPASS[Math.round((((from_deg % 360) + 360) % 360) / 45) % 8];
 
 /**
  * "Calm, 15 °C", "8 m/s from the west at 100 m above ground, 5 °C".

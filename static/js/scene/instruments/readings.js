@@ -1,7 +1,15 @@
 /** The instruments of one UAV as text and figures: [{ name, words, value, note }]. */
 
 import { t } from "../../text.js";
-import { exactClockText, exactHeightText, heightText, lengthText, percentText, speedText } from "../../units.js";
+import {
+  compassText,
+  exactClockText,
+  exactHeightText,
+  heightText,
+  lengthText,
+  percentText,
+  speedText,
+} from "../../units.js";
 import { ESTIMATED, LOST, PLANNED } from "../sources/pieces.js";
 
 /** @import { DrawnUav, Moment, Wind } from "../types.d.ts" */
@@ -11,22 +19,12 @@ import { ESTIMATED, LOST, PLANNED } from "../sources/pieces.js";
 /** @typedef {{ name: string, words: string, value: string, note: string, isBad?: boolean }} Reading */
 /** @typedef {ReadonlyMap<number, { label: string, name: string }>} TargetNames by the target's place */
 
-const POINTS = [
-  t("north"),
-  t("north-east"),
-  t("east"),
-  t("south-east"),
-  t("south"),
-  t("south-west"),
-  t("west"),
-  t("north-west"),
-];
 export const NONE = "–";
 
 /** "214°, south-west". @param {number} degrees */
 export function headingText(degrees) {
   const whole = Math.round(degrees) % 360;
-  return `${`${whole}`.padStart(3, "0")}°, ${POINTS[Math.round(whole / 45) % 8]}`;
+  return `${`${whole}`.padStart(3, "0")}°, ${compassText(whole)}`;
 }
 
 /** @param {Task} task @param {TargetNames} labels */

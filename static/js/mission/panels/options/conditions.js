@@ -3,8 +3,8 @@
 import { h, icon } from "../../../dom.js";
 import { open } from "../../../page/keyboard.js";
 import { t } from "../../../text.js";
-import { SHORT_UNIT, SPEED_UNIT, TEMPERATURE_UNIT } from "../../../units.js";
-import { compassText, conditionsOf, MAX_LAYERS, MILD_C } from "../../options/flight_options.js";
+import { compassText, SHORT_UNIT, SPEED_UNIT, TEMPERATURE_UNIT } from "../../../units.js";
+import { conditionsOf, MAX_LAYERS, MILD_C } from "../../options/flight_options.js";
 import { windArrow } from "../../options/wind_arrow.js";
 
 /** @import { Conditions } from "../../types.d.ts" */

@@ -2,8 +2,8 @@
 
 import { byId, h } from "../../../dom.js";
 import { t } from "../../../text.js";
-import { momentTyped, typedMoment, zoneText } from "../../../units.js";
-import { compassText, conditionsText, nextMinute } from "../../options/flight_options.js";
+import { compassText, momentTyped, typedMoment, zoneText } from "../../../units.js";
+import { conditionsText, nextMinute } from "../../options/flight_options.js";
 import { windArrow } from "../../options/wind_arrow.js";
 import { askForConditions } from "./conditions.js";
 import { showLegalTimes } from "./legal_times.js";
