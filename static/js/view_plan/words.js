@@ -34,7 +34,7 @@ export const COMPONENTS = {
 };
 
 /** @type {Record<Limit, string>} */
-export const LIMITS = {
+const LIMITS = {
   hidden: t("hidden by the tower itself"),
   height: t("only from below the least height"),
   gimbal: t("outside the gimbal's range"),
@@ -70,7 +70,7 @@ export function modelText({ form, height_m, height_source: source, voltage_v, is
 }
 
 /** The limit of most of the area that cannot be shown. @param {readonly ComponentCoverage[]} rows @returns {Limit | null} */
-export function mainLimit(rows) {
+function mainLimit(rows) {
   /** @type {Map<Limit, number>} */
   const areas = new Map();
   for (const { limit, area_m2, reachable } of rows)
