@@ -1,8 +1,9 @@
 /** The admin's geometry fields: the map shows the text's geometry; a point can be dragged or set by a click. */
 
 import { find, h } from "../dom.js";
+import { boxAround } from "../domain/geodesy.js";
 import { addSources, setFeatures } from "../map/look/style.js";
-import { boxAround, createMap } from "../map/map_view.js";
+import { createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
 import { t } from "../text.js";
 import { outlineOf, parseGeometry, pointText, positionsOf } from "./geometry_text.js";

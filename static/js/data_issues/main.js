@@ -2,9 +2,9 @@
 
 import { get, post } from "../api.js";
 import { byId } from "../dom.js";
+import { boxAround } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { coordinatesOf } from "../ground/record_list.js";
-import { boxAround } from "../map/map_view.js";
 import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";

@@ -1,4 +1,6 @@
-/** Lengths and areas while drawing, on the sphere: within 0.5 % of the server's measurement on the ellipsoid. */
+/** Lengths and areas while drawing, on the sphere: within 0.5 % of the server's measurement on the ellipsoid; and the box round positions. */
+
+/** @import { Box } from "../map/types.d.ts" */
 
 const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
 const RADIANS = Math.PI / 180;
@@ -76,6 +78,20 @@ export function ringArea_m2(ring) {
       (2 + Math.sin(latitude * RADIANS) + Math.sin(nextLat * RADIANS));
   });
   return Math.abs((sum * EARTH_RADIUS_M ** 2) / 2);
+}
+
+/** The box round positions, or null where there are none. @param {readonly (readonly number[])[]} positions @returns {Box | null} */
+export function boxAround(positions) {
+  if (!positions.length) return null;
+  /** @type {Box} */
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [longitude, latitude] of positions) {
+    box[0] = Math.min(box[0], longitude);
+    box[1] = Math.min(box[1], latitude);
+    box[2] = Math.max(box[2], longitude);
+    box[3] = Math.max(box[3], latitude);
+  }
+  return box;
 }
 
 /** { length_m, area_m2 }: what there is of them. @param {Shape} shape */

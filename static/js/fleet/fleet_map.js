@@ -1,11 +1,12 @@
 /** Positions of UAVs and bases, and the pin that sets the place of the edited one. */
 
 import { byId, h, icon } from "../dom.js";
+import { boxAround } from "../domain/geodesy.js";
 import { sourcesInView } from "../domain/regions.js";
 import { setAttribution } from "../map/furniture.js";
 import { storeLastView } from "../map/last_view.js";
 import { optionsOf, rememberedUnder } from "../map/look/under.js";
-import { boxAround, createMap } from "../map/map_view.js";
+import { createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
 import { mountRegionSwitcher } from "../map/region_switcher.js";
 import { onTheme } from "../page/theme.js";

@@ -2,7 +2,7 @@
 
 import { ApiError, get, post, remove } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";
-import { boxAround } from "../map/map_view.js";
+import { boxAround } from "../domain/geodesy.js";
 import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { historyList } from "./history_list.js";

@@ -2,8 +2,8 @@
 
 import { ApiError, get, patch, post, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
+import { boxAround } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
-import { boxAround } from "../map/map_view.js";
 import { announce, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
 import { t, tn } from "../text.js";

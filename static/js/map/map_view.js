@@ -203,17 +203,3 @@ function paddingIn(container) {
   const bottom = Math.min(Math.max(edge, footOf(container) + FOOT_GAP_PX), height / 3);
   return { top: edge, bottom, left: edge, right: Math.min(Math.max(edge, CONTROLS_PX), width / 4) };
 }
-
-/** The box round positions, or null where there are none. @param {readonly (readonly number[])[]} positions @returns {Box | null} */
-export function boxAround(positions) {
-  if (!positions.length) return null;
-  /** @type {Box} */
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const [longitude, latitude] of positions) {
-    box[0] = Math.min(box[0], longitude);
-    box[1] = Math.min(box[1], latitude);
-    box[2] = Math.max(box[2], longitude);
-    box[3] = Math.max(box[3], latitude);
-  }
-  return box;
-}

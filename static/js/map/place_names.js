@@ -70,7 +70,7 @@ function countryName(code) {
 export const nameIn = ([name, others], language) => others.split("|")[LANGUAGES.indexOf(language)] || name;
 
 /** @param {number} longitude @param {number} latitude @returns {Box} */
-const boxAround = (longitude, latitude) => [
+const boxOfTown = (longitude, latitude) => [
   longitude - TOWN_DEG,
   latitude - TOWN_DEG,
   longitude + TOWN_DEG,
@@ -84,6 +84,6 @@ export async function townsFound(text, most) {
     isTown: true,
     label: nameIn(place, locale),
     detail: countryName(place[4]),
-    box: boxAround(place[2] / UNITS_PER_DEG, place[3] / UNITS_PER_DEG),
+    box: boxOfTown(place[2] / UNITS_PER_DEG, place[3] / UNITS_PER_DEG),
   }));
 }

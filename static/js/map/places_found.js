@@ -1,6 +1,7 @@
 /** What a search may go to that is no asset: coordinates, no-fly zones, bases, UAVs and towns by name. */
 
 import { get } from "../api.js";
+import { boxAround } from "../domain/geodesy.js";
 import { t } from "../text.js";
 import { coordinateText } from "../units.js";
 import { positionIn } from "./coordinates_read.js";
@@ -72,7 +73,7 @@ async function zonesFound(text, signal) {
     icon: "zone",
     label: properties.name,
     detail: t("No-fly zone"),
-    box: boxOf(geometry.coordinates),
+    box: boxAround(/** @type {number[][]} */ (geometry.coordinates.flat(2))) ?? undefined,
   }));
 }
 
@@ -95,19 +96,6 @@ function basesKnown() {
     },
   );
   return bases;
-}
-
-/** @param {readonly unknown[]} coordinates @returns {Box} */
-function boxOf(coordinates) {
-  /** @type {Box} */
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const [longitude, latitude] of /** @type {number[][]} */ (coordinates.flat(2))) {
-    box[0] = Math.min(box[0], longitude);
-    box[1] = Math.min(box[1], latitude);
-    box[2] = Math.max(box[2], longitude);
-    box[3] = Math.max(box[3], latitude);
-  }
-  return box;
 }
 
 /**

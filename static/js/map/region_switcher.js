@@ -2,6 +2,7 @@
 
 import { ApiError, follow, patch, post } from "../api.js";
 import { byId, find, h, icon, setChildren } from "../dom.js";
+import { boxAround } from "../domain/geodesy.js";
 import { regionAt } from "../domain/regions.js";
 import { closeMenu, toggleMenu } from "../page/chrome.js";
 import { confirmAct } from "../page/confirm.js";
@@ -9,7 +10,6 @@ import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { percentText } from "../units.js";
 import { countsText } from "./look/region_words.js";
-import { boxAround } from "./map_view.js";
 import { townsFound } from "./place_names.js";
 
 /** @import { Answer } from "../api.js" */

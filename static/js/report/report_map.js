@@ -3,12 +3,13 @@
 import { get } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { LOST } from "../domain/certainty.js";
+import { boxAround } from "../domain/geodesy.js";
 import { routeLetter } from "../domain/palette.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
 import { optionsOf } from "../map/look/under.js";
-import { boxAround, createMap } from "../map/map_view.js";
+import { createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
 import { showTipsOnly } from "../map/tips_only.js";
 import { createTargetPills } from "../monitor/map/target_pills.js";

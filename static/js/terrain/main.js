@@ -2,9 +2,8 @@
 
 import { get, post, remove } from "../api.js";
 import { byId, find, h } from "../dom.js";
-import { pathLength_m } from "../domain/geodesy.js";
+import { boxAround, pathLength_m } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
-import { boxAround } from "../map/map_view.js";
 import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { mountGroundPanel } from "./ground_panel.js";

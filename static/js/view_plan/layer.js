@@ -1,10 +1,11 @@
 /** The flight through the photos of a tower on the map: its line, and a cone per photo along its yaw. */
 
+import { boxAround } from "../domain/geodesy.js";
 import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { ViewPlan } from "../api_types.d.ts" */
-/** @import { MapLibreMap } from "../map/types.d.ts" */
+/** @import { Box, MapLibreMap } from "../map/types.d.ts" */
 
 const ROUTE = "view-plan-route";
 const PHOTOS = "view-plan-photos";
@@ -54,7 +55,7 @@ const routeOf = ({ route }) => [
 ];
 
 /** @param {ViewPlan} plan @param {number | null} chosen */
-export const photosOf = ({ photos }, chosen) =>
+const photosOf = ({ photos }, chosen) =>
   photos.map(({ position, yaw_deg }, number) => ({
     type: "Feature",
     properties: { number, yaw_deg, isChosen: number === chosen },
@@ -70,15 +71,12 @@ export function createViewPlanLayer(map) {
 
   /** @param {ViewPlan} plan */
   function fit({ route }) {
-    const [longitudes, latitudes] = [0, 1].map((axis) => route.map((place) => place[axis]));
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    map.fitBounds(
-      [
-        [Math.min(...longitudes), Math.min(...latitudes)],
-        [Math.max(...longitudes), Math.max(...latitudes)],
-      ],
-      { padding: PADDING_PX, maxZoom: NEAREST_ZOOM, duration: calm ? 0 : SETTLED_MS },
-    );
+    map.fitBounds(/** @type {Box} */ (boxAround(route)), {
+      padding: PADDING_PX,
+      maxZoom: NEAREST_ZOOM,
+      duration: calm ? 0 : SETTLED_MS,
+    });
   }
 
   return {

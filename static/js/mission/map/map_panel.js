@@ -1,6 +1,7 @@
 /** The map of a mission: draws the store's state and passes pointer events to the actions. */
 
 import { byId, h } from "../../dom.js";
+import { boxAround } from "../../domain/geodesy.js";
 import { isAround } from "../../domain/regions.js";
 import { mountControls } from "../../map/controls.js";
 import * as rehearsedLayer from "../../map/layers/rehearsed.js";
@@ -10,7 +11,7 @@ import { createUavs } from "../../map/layers/uavs.js";
 import * as zonesLayer from "../../map/layers/zones.js";
 import { optionsOf } from "../../map/look/under.js";
 import { TILES } from "../../map/look/voltages.js";
-import { boxAround, createMap } from "../../map/map_view.js";
+import { createMap } from "../../map/map_view.js";
 import { goTo } from "../../map/places_found.js";
 import { tilesAddress } from "../../map/tiles_address.js";
 import { t, tn } from "../../text.js";

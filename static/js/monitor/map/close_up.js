@@ -2,10 +2,11 @@
 
 import { h, icon } from "../../dom.js";
 import { ESTIMATED, withinOf_m } from "../../domain/certainty.js";
+import { boxAround } from "../../domain/geodesy.js";
 import { colourClass } from "../../domain/palette.js";
 import { provideImages } from "../../map/look/images.js";
 import { mapStyle, repaint, sourceOf } from "../../map/look/style.js";
-import { boxAround, showFaults } from "../../map/map_view.js";
+import { showFaults } from "../../map/map_view.js";
 import { maplibre } from "../../map/maplibre.js";
 import { tilesAddress } from "../../map/tiles_address.js";
 import { t } from "../../text.js";

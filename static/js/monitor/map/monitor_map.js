@@ -2,6 +2,7 @@
 
 import { byId } from "../../dom.js";
 import { certaintyOf, LOST, MEASURED, standsAt } from "../../domain/certainty.js";
+import { boxAround } from "../../domain/geodesy.js";
 import { inAir } from "../../domain/in_air.js";
 import { alarmOf } from "../../domain/order.js";
 import { rallyName, routeLetter, routeNumber } from "../../domain/palette.js";
@@ -11,7 +12,7 @@ import * as fenceLayer from "../../map/layers/fences.js";
 import { createRallyPoints } from "../../map/layers/lost_link.js";
 import * as routesLayer from "../../map/layers/routes.js";
 import { optionsOf } from "../../map/look/under.js";
-import { boxAround, createMap } from "../../map/map_view.js";
+import { createMap } from "../../map/map_view.js";
 import { showTipsOnly } from "../../map/tips_only.js";
 import { t, tn } from "../../text.js";
 import { exactClockText } from "../../units.js";

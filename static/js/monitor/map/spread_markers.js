@@ -1,7 +1,7 @@
 /** Placement of the labels of UAV markers, with a count where too many overlap. */
 
 import { h, refill } from "../../dom.js";
-import { boxAround } from "../../map/map_view.js";
+import { boxAround } from "../../domain/geodesy.js";
 import { maplibre } from "../../map/maplibre.js";
 import { tn } from "../../text.js";
 import { ALONE, clustersOf, spotsOf } from "./marker_layout.js";

@@ -14,18 +14,38 @@ test("bridges that are called alike are told apart by where they are", () => {
   assert.equal(third.detail, "carries a road");
 });
 
-test("a search finds bases by name, and asks for them once", async (context) => {
+test("a search finds bases and zones, these with their box, and asks for bases once", async (context) => {
   const asked = [];
   context.mock.method(globalThis, "fetch", async (address) => {
     asked.push(String(address).split("?")[0]);
     const body = String(address).includes("/bases")
       ? { results: [{ name: "Gate west", position: [10, 56] }] }
-      : { features: [] };
+      : {
+          features: [
+            {
+              geometry: {
+                coordinates: [
+                  [
+                    [
+                      [9, 55],
+                      [9, 57],
+                      [11, 56],
+                    ],
+                  ],
+                ],
+              },
+              properties: { name: "West" },
+            },
+          ],
+        };
     return new Response(JSON.stringify(body), { headers: { "Content-Type": "application/json" } });
   });
   assert.deepEqual(
-    (await placesFound("gate")).map(({ label, detail, position }) => [label, detail, position]),
-    [["Gate west", "Base", [10, 56]]],
+    (await placesFound("gate")).map(({ label, detail, position, box }) => [label, detail, position, box]),
+    [
+      ["Gate west", "Base", [10, 56], undefined],
+      ["West", "No-fly zone", undefined, [9, 55, 11, 57]],
+    ],
   );
   await placesFound("west");
   assert.equal(asked.filter((address) => address.endsWith("/bases")).length, 1);
