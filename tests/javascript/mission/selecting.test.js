@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { isWide } from "../../../static/js/map/lasso.js";
-import { partOfLine } from "../../../static/js/map/line_part.js";
+import { partOfLine } from "../../../static/js/mission/map/line_part.js";
 import {
   EMPTY,
   isUsualTask,

@@ -3,8 +3,8 @@
 import { get } from "../../api.js";
 import { piecesOf } from "../../map/click_router.js";
 import * as selectionLayer from "../../map/layers/selection.js";
-import { partOfLine } from "../../map/line_part.js";
 import { isWhole } from "../selection.js";
+import { partOfLine } from "./line_part.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { AssetDetailFeature } from "../../api_types.d.ts" */

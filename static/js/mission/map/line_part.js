@@ -1,6 +1,6 @@
 /** The part of a drawn line between two places on it. */
 
-/** @import { Geometry } from "./types.d.ts" */
+/** @import { Geometry } from "../../map/types.d.ts" */
 
 /**
  * Nearest place of one path to a position: { index of the leg, share along it, distance }, on the local plane.
