@@ -6,7 +6,7 @@ import { countsText } from "../map/look/region_words.js";
 import { readPage } from "../page/chrome.js";
 import { t, tn } from "../text.js";
 import { coordinateText, dateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
-import { closeViewPlan, viewPlanPart } from "../view_plan/part.js";
+import { closeViewPlan, viewPlanPart } from "../view_plan/panel.js";
 import { editMarked } from "./bulk_edit.js";
 import { mountFilters } from "./filters.js";
 import { assetForm } from "./form.js";

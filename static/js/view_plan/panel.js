@@ -1,4 +1,4 @@
-/** The panel "Plan photos" of a tower: camera, ground sample distance and least height; the plan is made anew with each change. */
+/** "Plan photos" in a tower's details: a button that opens the panel of camera, ground sample distance and least height. Each change plans anew. */
 
 import { ApiError, isAbort, post } from "../api.js";
 import { gsdText } from "../cameras/words.js";
@@ -8,11 +8,15 @@ import { announce } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { SHORT_UNIT } from "../units.js";
 import { readCameras } from "./cameras.js";
+import { createViewPlanLayer } from "./layer.js";
 import { resultOf } from "./result.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { ViewPlan } from "../api_types.d.ts" */
-/** @import { createViewPlanLayer } from "./layer.js" */
+/** @import { Palette } from "../domain/palette.js" */
+/** @import { MapLibreMap } from "../map/types.d.ts" */
+
+/** @typedef {{ map: MapLibreMap, onRecolour: (act: (palette: Palette) => void) => unknown }} Ground */
 
 const [MIN_GSD_MM, MAX_GSD_MM, GSD_STEP_MM] = [0.5, 10, 0.1];
 const [MIN_HEIGHT_M, MAX_HEIGHT_M] = [2, 60];
@@ -63,7 +67,7 @@ function heightField() {
   });
 }
 
-export class ViewPlanPanel {
+class ViewPlanPanel {
   #asset;
   #on;
   #reading = new AbortController();
@@ -210,4 +214,48 @@ export class ViewPlanPanel {
       ),
     );
   }
+}
+
+/** @type {ReturnType<typeof createViewPlanLayer> | null} */
+let layer = null;
+/** @type {ViewPlanPanel | null} */
+let open = null;
+
+/** Close the panel, where one is open: the tower is no longer shown. */
+export function closeViewPlan() {
+  open?.close();
+}
+
+/** @param {Ground} ground */
+function layerOf({ map, onRecolour }) {
+  const made = createViewPlanLayer(map);
+  onRecolour(() => made.recolour());
+  return made;
+}
+
+/** @param {number} asset id of a tower @param {Ground} ground */
+export function viewPlanPart(asset, ground) {
+  const place = h("div", {});
+  const button = h(
+    "button",
+    { type: "button", class: "button", onclick: show },
+    icon("camera", "small"),
+    t("Plan photos"),
+  );
+  function show() {
+    layer ??= layerOf(ground);
+    open = new ViewPlanPanel(asset, {
+      layer,
+      closed() {
+        open = null;
+        setChildren(place, button);
+        if (button.isConnected) button.focus();
+      },
+    });
+    setChildren(place, open.element);
+    open.title.focus({ preventScroll: true });
+    open.element.scrollIntoView({ block: "start" });
+  }
+  setChildren(place, button);
+  return h("div", { class: "record-acts" }, place);
 }
