@@ -5,6 +5,7 @@ import { h, setChildren } from "../../dom.js";
 import { simplified } from "../../domain/geodesy.js";
 import { shapeOf } from "../../draw/shape.js";
 import { faultsOf } from "../../draw/validity.js";
+import { numberField } from "../../page/fields.js";
 import { open } from "../../page/keyboard.js";
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
@@ -15,6 +16,7 @@ import { zoneForm } from "../../zones/form.js";
 
 const [USUAL_HOURS, MAX_HOURS] = [2, 72];
 const [USUAL_RADIUS_M, MAX_RADIUS_M] = [200, 20_000];
+const WHOLE = { required: true, min: 1, step: 1 };
 const ROUGH = 0.01; // of the drawn line, as a share of its extent
 
 /** @typedef {{ ring: Position[] } | { centre: Position }} Drawn */
@@ -38,34 +40,19 @@ export function areaOf(ring) {
   return { geometry, fault: fault ?? "" };
 }
 
-/** @param {string} id @param {string} words @param {string} unit @param {number} value @param {number} max */
-function numberField(id, words, unit, value, max) {
-  const input = h("input", {
-    class: "input",
-    id,
-    type: "number",
-    min: 1,
-    max,
-    step: 1,
-    required: true,
-    value: `${value}`,
-  });
-  const element = h(
-    "div",
-    { class: "field" },
-    h("label", { for: id }, words),
-    h("span", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)),
-  );
-  return { element, read: () => input.valueAsNumber };
-}
-
 /** Asks for its facts and stores it. @param {Drawn} drawn @param {{ closed: () => void }} on */
 export function askForZone(drawn, { closed }) {
   const area = "ring" in drawn ? areaOf(drawn.ring) : null;
   if (area?.fault) return toast(t("{why} Draw it again.", { why: area.fault }));
-  const hours = numberField("zone-hours", t("Applies from now for"), "h", USUAL_HOURS, MAX_HOURS);
-  const radius = area ? null : numberField("zone-radius", t("Radius"), "m", USUAL_RADIUS_M, MAX_RADIUS_M);
-  const times = { element: hours.element, read: () => [periodOf(Date.now(), hours.read())] };
+  const hours = numberField("hours", t("Applies from now for"), USUAL_HOURS, {
+    ...WHOLE,
+    unit: "h",
+    max: MAX_HOURS,
+  });
+  const radius = area
+    ? null
+    : numberField("radius_m", t("Radius"), USUAL_RADIUS_M, { ...WHOLE, unit: "m", max: MAX_RADIUS_M });
+  const times = { element: hours.element, read: () => [periodOf(Date.now(), hours.read() ?? USUAL_HOURS)] };
   const kept = { name: t("Temporary zone"), restriction: "PROHIBITED" };
   const { element: form, read } = zoneForm(null, "", kept, times);
   const wrong = h("p", { class: "field-error", role: "alert" });
