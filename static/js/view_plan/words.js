@@ -106,18 +106,19 @@ export const shareText = (share) => percentText(Math.floor(share * 100 + 1e-9));
 /** Why a plan without photos shows nothing, and what to change. @param {ViewPlan} plan */
 export function nothingText({ camera, gsd_mm, clearance_m, coverage }) {
   const clearance = exactHeightText(clearance_m);
-  const limit = mainLimit(coverage.components);
-  if (limit === "distance" && standoff_m(camera, gsd_mm) < clearance_m)
+  const distance_m = standoff_m(camera, gsd_mm);
+  const focus_m = camera.nearest_focus_m ?? 0;
+  if (distance_m < clearance_m && focus_m <= clearance_m)
     return t(
       "This camera shows {gsd} at the clearance of {clearance} at best. Choose a longer lens or a coarser GSD.",
       { gsd: gsdText(gsdAt_mm(camera, clearance_m)), clearance },
     );
-  const focus_m = camera.nearest_focus_m ?? 0;
-  if (standoff_m(camera, gsd_mm) <= focus_m)
+  if (distance_m <= focus_m)
     return t("This camera focuses from {distance} on and shows {gsd} there. Choose a coarser GSD.", {
       distance: exactHeightText(focus_m),
       gsd: gsdText(gsdAt_mm(camera, focus_m)),
     });
+  const limit = mainLimit(coverage.components);
   return limit
     ? t("Most of the tower: {reason}.", { reason: LIMITS[limit] })
     : t("Choose another camera or a coarser GSD.");
