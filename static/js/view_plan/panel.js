@@ -7,7 +7,7 @@ import { numberField } from "../page/fields.js";
 import { announce } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { SHORT_UNIT } from "../units.js";
-import { readCameras } from "./cameras.js";
+import { firstThatReaches, readCameras } from "./cameras.js";
 import { createViewPlanLayer } from "./layer.js";
 import { resultOf } from "./result.js";
 
@@ -21,7 +21,7 @@ import { resultOf } from "./result.js";
 const [MIN_GSD_MM, MAX_GSD_MM, GSD_STEP_MM] = [0.5, 10, 0.1];
 const [MIN_HEIGHT_M, MAX_HEIGHT_M] = [2, 60];
 const SETTLED_MS = 300;
-/** What was asked last is asked first of the next tower. */
+/** What was asked last is asked first of the next tower; camera: "" until one was chosen or has shown anything. */
 const asked = { camera: "", gsd_mm: 2, min_height_m: 4 };
 
 /** @param {number} height_m @param {(figure: number) => number} round inwards */
@@ -75,8 +75,8 @@ class ViewPlanPanel {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   #timer;
   #isFirst = true;
-  /** @type {Awaited<ReturnType<typeof readCameras>>["requests"]} */
-  #requests = new Map();
+  /** @type {Awaited<ReturnType<typeof readCameras>>["choices"]} */
+  #choices = new Map();
   #camera = h("select", { class: "input", id: "view-plan-camera" });
   #gsd = gsdField();
   #height = heightField();
@@ -117,6 +117,9 @@ class ViewPlanPanel {
     this.#asset = asset;
     this.#on = on;
     this.#form.addEventListener("submit", (event) => event.preventDefault());
+    this.#camera.addEventListener("change", () => {
+      asked.camera = this.#camera.value;
+    });
     this.#form.addEventListener("change", () => {
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => this.#plan(), SETTLED_MS);
@@ -142,10 +145,10 @@ class ViewPlanPanel {
   async #start() {
     this.#wait(t("Reading cameras…"));
     try {
-      const { options, requests } = await readCameras(this.#reading.signal);
-      this.#requests = requests;
+      const { options, choices } = await readCameras(this.#reading.signal);
+      this.#choices = choices;
       setChildren(this.#camera, options);
-      if (requests.has(asked.camera)) this.#camera.value = asked.camera;
+      if (choices.has(asked.camera)) this.#camera.value = asked.camera;
       await this.#plan();
     } catch (error) {
       this.#failed(error, () => this.#start());
@@ -154,20 +157,30 @@ class ViewPlanPanel {
 
   async #plan() {
     this.#planning.abort();
-    const chosen = this.#requests.get(this.#camera.value);
+    const chosen = this.#choices.get(this.#camera.value);
     if (!chosen || !this.#form.checkValidity()) return;
     this.#planning = new AbortController();
-    Object.assign(asked, { camera: this.#camera.value, gsd_mm: this.#gsd.read(), min_height_m: this.#height.read() });
+    Object.assign(asked, { gsd_mm: this.#gsd.read(), min_height_m: this.#height.read() });
     this.#wait(t("Planning photos…"));
     const { gsd_mm, min_height_m } = asked;
-    const body = { asset: this.#asset, ...chosen, gsd_mm, min_height_m };
+    const body = { asset: this.#asset, ...chosen.request, gsd_mm, min_height_m };
     const { signal } = this.#planning;
     try {
       const { data } = /** @type {Answer<ViewPlan>} */ (await post("/view-plans", body, { signal }));
-      this.#show(data);
+      if (this.#changesCamera(data)) await this.#plan();
+      else this.#show(data);
     } catch (error) {
       this.#failed(error, () => this.#plan());
     }
+  }
+
+  /** Before a camera was chosen or has shown anything: to the first one that can. @param {ViewPlan} plan */
+  #changesCamera(plan) {
+    if (plan.photos.length) asked.camera ||= this.#camera.value;
+    const next = asked.camera ? null : firstThatReaches(this.#choices, plan);
+    if (next === null || next === this.#camera.value) return false;
+    this.#camera.value = next;
+    return true;
   }
 
   /** The plan before stays in grey. @param {string} words */

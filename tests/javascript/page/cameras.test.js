@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { cameraOf, groupsOf, matching } from "../../../static/js/cameras/catalogue.js";
 import { cameraText, focalText, gsdAt_mm, readTitle, sourcesOf, standoff_m } from "../../../static/js/cameras/words.js";
+import { firstThatReaches } from "../../../static/js/view_plan/cameras.js";
 import { byKind, modelText, nothingText, restText, shareText } from "../../../static/js/view_plan/words.js";
 
 const camera = {
@@ -75,10 +76,27 @@ test("the model's assumptions are one sentence", () => {
 test("a plan that shows nothing says what the camera gives, and what to change", () => {
   const plan = { camera, gsd_mm: 0.05, clearance_m: 7.5, coverage: { components: [other] } };
   assert.match(nothingText(plan), /^This camera shows 0.1.mm at the clearance of 7.5.m at best/);
+  const blurred = { ...plan, camera: { ...camera, nearest_focus_m: 5 }, coverage: { components: [part] } };
+  assert.match(nothingText(blurred), /at the clearance of 7.5.m at best/); // nearer it is sharp, but may not be
   const near = { ...plan, gsd_mm: 0.1, camera: { ...camera, nearest_focus_m: 20 } };
   assert.match(nothingText(near), /^This camera focuses from 20.m on and shows 0.2.mm there/);
   assert.equal(
     nothingText({ ...plan, gsd_mm: 2, coverage: { components: [{ ...part, limit: "height" }] } }),
     "Most of the tower: only from below the least height.",
   );
+});
+
+test("a plan begins with the first camera whose longest lens reaches the ground sample distance from the clearance", () => {
+  const wide = { camera: { ...camera, focal_lengths_mm: [2] } }; // 2 mm at 5 m
+  const far = { camera: { ...camera, nearest_focus_m: 200 } };
+  const choices = new Map([
+    ["wide", wide],
+    ["far", far],
+    ["zoom", { camera }], // 2 mm at 187.5 m
+    ["other", { camera }],
+  ]);
+  assert.equal(firstThatReaches(choices, { gsd_mm: 2, clearance_m: 7.5 }), "zoom");
+  assert.equal(firstThatReaches(choices, { gsd_mm: 2, clearance_m: 4 }), "wide");
+  assert.equal(firstThatReaches(choices, { gsd_mm: 3, clearance_m: 50 }), "far");
+  assert.equal(firstThatReaches(choices, { gsd_mm: 2, clearance_m: 190 }), null);
 });
