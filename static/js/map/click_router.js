@@ -3,7 +3,7 @@
 import { h } from "../dom.js";
 import { swallowDrawnClick } from "./drawn_click.js";
 import { drawLassos } from "./lasso.js";
-import { isAt as isRegionAt } from "./layers/regions.js";
+import { isAnswered } from "./layers/clicks.js";
 import { PICKABLE, TILES } from "./look/voltages.js";
 
 /** @import { MapGeoJSONFeature } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
@@ -88,7 +88,7 @@ export function routeClicks(map, on) {
   };
 
   map.on("click", ({ point, lngLat }) => {
-    if (!isRegionAt(map, point)) on.click(thingAt(point), [lngLat.lng, lngLat.lat], point);
+    if (!isAnswered(map, point)) on.click(thingAt(point), [lngLat.lng, lngLat.lat], point);
   });
 
   let frame = 0;

@@ -1,6 +1,7 @@
 /** The flight through the photos of a tower on the map: its line, and a cone per photo along its yaw. */
 
 import { boxAround } from "../domain/geodesy.js";
+import { answerClicks } from "../map/layers/clicks.js";
 import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
@@ -40,7 +41,7 @@ function layers() {
       layout: round,
       paint: { "line-color": ink, "line-width": 1.6 },
     },
-    { id: "view-plan-photos", type: "symbol", source: PHOTOS, layout: cone },
+    { id: PHOTOS, type: "symbol", source: PHOTOS, layout: cone },
   ];
   return /** @type {LayerSpecification[]} */ (found);
 }
@@ -62,11 +63,12 @@ const photosOf = ({ photos }, chosen) =>
     geometry: { type: "Point", coordinates: position },
   }));
 
-/** @param {MapLibreMap} map */
-export function createViewPlanLayer(map) {
+/** @param {MapLibreMap} map @param {(number: number) => void} clicked a photo's cone is, the first has number 0 */
+export function createViewPlanLayer(map, clicked) {
   function add() {
     addSources(map, [ROUTE, PHOTOS]);
     for (const layer of layers()) map.addLayer(layer);
+    answerClicks(map, [PHOTOS], ({ properties }) => clicked(properties.number));
   }
 
   /** @param {ViewPlan} plan */

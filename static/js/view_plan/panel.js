@@ -142,6 +142,15 @@ class ViewPlanPanel {
     this.#on.closed();
   }
 
+  /** As a click on its row: chosen, or chosen no more. @param {number} number */
+  pressPhoto(number) {
+    const row = this.#result.querySelectorAll(".photo-row")[number];
+    if (!(row instanceof HTMLElement)) return;
+    row.closest("details")?.toggleAttribute("open", true);
+    row.click();
+    row.scrollIntoView({ block: "nearest" });
+  }
+
   async #start() {
     this.#wait(t("Reading cameras…"));
     try {
@@ -241,7 +250,7 @@ export function closeViewPlan() {
 
 /** @param {Ground} ground */
 function layerOf({ map, onRecolour }) {
-  const made = createViewPlanLayer(map);
+  const made = createViewPlanLayer(map, (number) => open?.pressPhoto(number));
   onRecolour(() => made.recolour());
   return made;
 }

@@ -1,13 +1,15 @@
 """A camera of the catalogue is given to a UAV type, and photos of a tower are planned with it."""
 
+import math
 import re
 from collections.abc import Callable
+from typing import Any
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, Response, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.operator_map import asks, place_of, wait_for_map
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 
@@ -16,6 +18,7 @@ pytestmark = pytest.mark.browser
 Picture = Callable[[Page, str], None]
 PLANNED_MS = 120_000  # some seconds, more where other tests run
 CAMERA = "Mavic 3 Enterprise, tele camera"
+CONE_PX = 24
 TOO_COARSE = "Matrice 30T, thermal camera"
 
 
@@ -49,11 +52,25 @@ def a_type_gets_a_camera(page: Page) -> None:
     expect(cameras).to_contain_text("2\u00a0mm at 37.5\u00a0m")
 
 
+def clicks_a_cone(page: Page, panel: Locator, photos: list[dict[str, Any]]) -> None:
+    """Photos may stand above one another: the row is of one that is there."""
+    place = place_of(page, photos[0]["position"])
+    page.mouse.click(**place)
+    pressed = panel.locator(".photo-row[aria-pressed='true']")
+    expect(pressed).to_have_count(1)
+    expect(pressed).to_be_in_viewport()
+    number = int(re.findall(r"\d+", pressed.inner_text())[0])
+    chosen = place_of(page, photos[number - 1]["position"])
+    assert math.dist(place.values(), chosen.values()) < CONE_PX
+
+
 def test_photos_of_a_tower_are_planned_with_the_camera_of_a_type(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     a_type_gets_a_camera(page)
     visitor.complaints[:] = [words for words in visitor.complaints if "400" not in words]  # of the figure that was refused
     tower = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=1")["features"][0]["id"]
+    plans: list[Response] = []
+    page.on("response", lambda response: plans.append(response) if response.url.endswith("/view-plans") else None)
     page.goto(f"/assets?id={tower}")
     wait_for_map(page)
     page.get_by_role("button", name="Plan photos").click()
@@ -72,6 +89,9 @@ def test_photos_of_a_tower_are_planned_with_the_camera_of_a_type(visitor: Visito
         page.locator("#map[data-idle]").wait_for(state="attached")
         picture(page, f"view-plan-{theme}")
         assert faults(page) == []
+    photo.click()
+    expect(photo).to_have_attribute("aria-pressed", "false")
+    clicks_a_cone(page, panel, plans[-1].json()["photos"])
     panel.get_by_label("Camera", exact=True).select_option(label=TOO_COARSE)
     expect(panel.get_by_text("Nothing can be shown.")).to_be_visible(timeout=PLANNED_MS)
     expect(panel.get_by_text(re.compile(r"This camera shows .* at the clearance of .* at best"))).to_be_visible()

@@ -3,14 +3,11 @@
 import { zoomOfRegion } from "../../domain/regions.js";
 import { countsText } from "../look/region_words.js";
 import { setFeatures } from "../look/style.js";
+import { answerClicks } from "./clicks.js";
 
-/** @import { Box, MapLibreMap, Region, ScreenPoint } from "../types.d.ts" */
+/** @import { Box, MapLibreMap, Region } from "../types.d.ts" */
 
 const LAYERS = ["region-dots", "region-names"];
-
-/** Whether a region's dot or name is there: a click brings the region into view, and does nothing else. @param {MapLibreMap} map @param {ScreenPoint} point */
-export const isAt = (map, point) =>
-  map.queryRenderedFeatures([point.x, point.y], { layers: LAYERS.filter((id) => map.getLayer(id)) }).length > 0;
 
 /** @param {readonly Region[]} regions */
 export const featuresOf = (regions) =>
@@ -28,14 +25,8 @@ export const featuresOf = (regions) =>
  */
 export function addTo(map, regions, show) {
   setFeatures(map, "regions", featuresOf(regions));
-  map.on("click", LAYERS, ({ features }) => {
-    const region = regions.find(({ id }) => id === features?.[0]?.id);
+  answerClicks(map, LAYERS, ({ id }) => {
+    const region = regions.find((candidate) => candidate.id === id);
     if (region) show(region.extent);
-  });
-  map.on("mouseenter", LAYERS, () => {
-    map.getCanvas().style.cursor = "pointer";
-  });
-  map.on("mouseleave", LAYERS, () => {
-    map.getCanvas().style.cursor = "";
   });
 }
