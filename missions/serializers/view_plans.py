@@ -15,6 +15,7 @@ from workspace.api.fields import FiniteFloatField
 from workspace.reason_texts import reason_text
 
 MAX_MM, MAX_PIXELS, MAX_ZOOM_STEPS = 1_000.0, 50_000, 20
+MAX_INTERVAL_S, MAX_NEAREST_FOCUS_M = 1_000.0, 1_000.0
 GSDS_MM = (0.1, 100.0)
 HEIGHTS_M = (2.0, 60.0)
 ANGLES_DEG = (-180.0, 180.0)
@@ -32,8 +33,8 @@ class CameraSerializer(KnownFieldsSerializer):
         child=AboveZeroField(max_value=10 * MAX_MM), min_length=1, max_length=MAX_ZOOM_STEPS,
         help_text="real focal lengths, not 35 mm equivalents, shortest first; several for a zoom",
     )  # fmt: skip
-    min_interval_s = AboveZeroField(max_value=MAX_MM, required=False, help_text="seconds between two photos")
-    nearest_focus_m = FiniteFloatField(min_value=0.0, max_value=MAX_MM, required=False)
+    min_interval_s = AboveZeroField(max_value=MAX_INTERVAL_S, required=False, help_text="seconds between two photos")
+    nearest_focus_m = FiniteFloatField(min_value=0.0, max_value=MAX_NEAREST_FOCUS_M, required=False)
     shutter_s = AboveZeroField(max_value=10.0, required=False, help_text="exposure time of a photo")
     gimbal_pitch_min_deg = BetweenField(ANGLES_DEG, required=False, help_text="lowest angle, -90 looks straight down")
     gimbal_pitch_max_deg = BetweenField(ANGLES_DEG, required=False, help_text="highest angle, 0 is the horizon")
