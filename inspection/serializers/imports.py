@@ -46,9 +46,6 @@ class ProvenanceInputSerializer(serializers.Serializer):
 class ParametersField(serializers.DictField):
     """Parameters of an import. `region` names the region that it joins or makes; without it the place decides."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__(required=False, **options)
-
     def to_internal_value(self, data: Any) -> Any:
         values = super().to_internal_value(data)
         name = values.get("region", "")
@@ -63,7 +60,8 @@ class ImportInputSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=ImportKind.choices)
     upload = serializers.UUIDField(required=False, help_text="a complete upload; not for what is fetched")
     parameters = ParametersField(
-        help_text="by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N]; of all: region (a name)"
+        required=False,
+        help_text="by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N]; of all: region (a name)",
     )
     provenance = ProvenanceInputSerializer(required=False)
     auto_apply = serializers.BooleanField(
@@ -81,7 +79,7 @@ class ImportInputSerializer(serializers.Serializer):
 
 
 class ParametersSerializer(serializers.Serializer):
-    parameters = ParametersField()
+    parameters = ParametersField(required=False)
 
 
 class ProposalFaultSerializer(serializers.Serializer):
