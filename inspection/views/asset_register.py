@@ -13,7 +13,7 @@ from rest_framework.views import APIView
 from inspection.exporters.rows import Columns, ExportRow
 from inspection.models import Asset, AssetKind
 from inspection.selectors import references_of
-from inspection.selectors.register.assets import AssetFilter, assets_that_match, counts_that_match, last_inspections
+from inspection.selectors.register.assets import AssetFilter, asset_counts, assets_that_match, last_inspections
 from inspection.serializers.assets import FIELDS_OF_AN_ASSET, asset_properties
 from inspection.serializers.register import (
     MAX_BULK,
@@ -54,7 +54,7 @@ class AssetCountsView(APIView):
         responses=AssetCountsSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        counts = counts_that_match(asset_filter(request))
+        counts = asset_counts(asset_filter(request))
         return Response(
             {
                 "total": counts.total,

@@ -10,7 +10,7 @@ from rest_framework.views import APIView
 from inspection import selectors
 from inspection.models import Asset, AssetKind
 from inspection.selectors.assets import DrawnAsset
-from inspection.selectors.register.assets import assets_that_match, in_order, last_inspections
+from inspection.selectors.register.assets import assets_in_order, assets_that_match, last_inspections
 from inspection.serializers.assets import (
     FIELDS_OF_AN_ASSET,
     AssetCollectionSerializer,
@@ -21,7 +21,7 @@ from inspection.serializers.edits import AssetInputSerializer
 from inspection.services import delete_asset, save_asset
 from inspection.services.curation import REFERENCE_FIELDS, save_asset_reference
 from inspection.views.edits import Curated, answer, asset_now, with_values
-from inspection.views.register_filters import ASSET_FILTERS, SORT, SORTS, asset_filter
+from inspection.views.register_filters import ASSET_FILTERS, ASSET_SORT, ASSET_SORTS, asset_filter
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_choice, asked_flag, changed_since, page_of
 from workspace.api.permissions import CURATORS
@@ -56,7 +56,7 @@ class AssetList(APIView):
         summary="Assets: towers, lines, railways, bridges",
         parameters=[
             *ASSET_FILTERS,
-            SORT,
+            ASSET_SORT,
             OpenApiParameter("total", bool, description="true: also how many there are, on all pages"),
             CHANGED_SINCE,
             *PAGE_PARAMETERS,
@@ -68,8 +68,8 @@ class AssetList(APIView):
         found = changed_since(request, assets_that_match(wanted))
         assets = found.only(*FIELDS_OF_AN_ASSET)
         order: tuple[str, ...] = ("pk",)
-        if sort := asked_choice(request, "sort", SORTS):
-            assets, order = in_order(assets, sort, organisation)
+        if sort := asked_choice(request, "sort", ASSET_SORTS):
+            assets, order = assets_in_order(assets, sort, organisation)
         elif wanted.text:
             assets, order = with_match_rank(assets, text=wanted.text), BEST_FIRST
         page = page_of(request, assets, order=order)

@@ -5,7 +5,7 @@ from drf_spectacular.utils import OpenApiParameter
 from rest_framework.request import Request
 
 from inspection.models import AssetKind
-from inspection.selectors.register.assets import ORDERS, AssetFilter
+from inspection.selectors.register.assets import ASSET_ORDERS, AssetFilter
 from inspection.selectors.register.zones import ZONE_ORDERS, ZoneFilter
 from inspection.serializers.edits import HIGHEST_VOLTAGE_V, MAX_VOLTAGES
 from inspection.views.parameters import BOX, box_of, invalid, kinds_of, text_of
@@ -21,8 +21,8 @@ REGION = WholeNumber("region", "the id of a region: what imports brought into it
 VOLTAGE = WholeNumber(
     "voltage_v", "volts of the asset, or of its line where it states none", maximum=HIGHEST_VOLTAGE_V, max_values=MAX_VOLTAGES
 )
-SORTS = (*ORDERS, *(f"-{name}" for name in ORDERS))
-SORT = OpenApiParameter("sort", str, enum=SORTS, description='by this fact; "-" before it: the largest, last or newest first')
+ASSET_SORTS = (*ASSET_ORDERS, *(f"-{name}" for name in ASSET_ORDERS))
+ASSET_SORT = OpenApiParameter("sort", str, enum=ASSET_SORTS, description='by this fact; "-" before it: the largest, last or newest first')
 ASSET_FILTERS = [
     BOX,
     OpenApiParameter("kind", several_of(AssetKind.values), description=f"one or several of {', '.join(AssetKind.values)}, with commas"),

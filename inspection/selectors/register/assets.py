@@ -122,11 +122,11 @@ _ORDERS: dict[str, Any] = {
     "length": Coalesce("length_m", Value(0.0), output_field=FloatField()),
     "changed": F("updated_at"),
 }
-ORDERS = (*_ORDERS, "inspected")
+ASSET_ORDERS = (*_ORDERS, "inspected")
 
 
-def in_order(assets: QuerySet[DrawnAsset], order: str, organisation_id: int) -> tuple[QuerySet[DrawnAsset], tuple[str, ...]]:
-    """Return the assets with what an order of ORDERS compares, and the names to sort by; "-" before it reverses the order."""
+def assets_in_order(assets: QuerySet[DrawnAsset], order: str, organisation_id: int) -> tuple[QuerySet[DrawnAsset], tuple[str, ...]]:
+    """Return the assets with what an order of ASSET_ORDERS compares, and the names to sort by; "-" before it reverses the order."""
     name = order.removeprefix("-")
     column = _last_inspection(organisation_id) if name == "inspected" else _ORDERS[name]
     sign = "-" if order.startswith("-") else ""
@@ -151,7 +151,7 @@ class _Tally:
     total: int = 0
 
 
-def counts_that_match(wanted: AssetFilter) -> AssetCounts:
+def asset_counts(wanted: AssetFilter) -> AssetCounts:
     """Count the assets of a filter, with one query; none while only kind, voltage and operator change."""
     tally = _Tally()
     for group in _groups_of(replace(wanted, kinds=(), voltages_v=(), operator="")):
