@@ -132,7 +132,7 @@ def scene_in(box: Box) -> SceneContent:
     west, south, east, north = box
     middle = np.array([(west + east) / 2, (south + north) / 2])
     found, left_out = _overhead(box, middle)
-    supports, spans, assets = drawn_as_tagged(found)
+    supports, spans, assets = supports_and_spans(found)
     railways = [(asset, _shape(asset, clip)) for asset in _in_area(AssetKind.RAILWAY, clip).filter(is_flyable=True)]
     zones = NoFlyZone.objects.filter(geometry__intersects=area_of(clip)).annotate(wkb=AsWKB("geometry")).defer("geometry")
     kept_railways, left_out["railways"] = _nearest(railways, middle, MAX_RAILWAYS)
@@ -157,7 +157,7 @@ def scene_in(box: Box) -> SceneContent:
     )
 
 
-def drawn_as_tagged(found: Overhead) -> tuple[list[DrawnSupport], list[DrawnSpan], dict[int, Asset]]:
+def supports_and_spans(found: Overhead) -> tuple[list[DrawnSupport], list[DrawnSpan], dict[int, Asset]]:
     """Return supports and spans in the order of `found`, and the assets of supports by primary key."""
     assets = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=found.support[found.support >= 0].tolist()))}
     lines = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=sorted({line for own in found.span_lines for line in own})))}

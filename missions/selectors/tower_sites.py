@@ -14,7 +14,7 @@ from inspection.network.inspection_graph import NodeKind
 from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, UNTAGGED_HEIGHT_M
 from inspection.scene.overhead import Overhead
 from inspection.selectors.assets import Box, area_of
-from inspection.selectors.scene import drawn_as_tagged, overhead_in
+from inspection.selectors.scene import overhead_in, supports_and_spans
 from inspection.selectors.terrain import ground_heights_m, has_terrain
 from planning.views.ground_band import GroundBand
 from planning.views.keep_out import Obstacle
@@ -70,7 +70,7 @@ def tower_on_map(asset: Asset, min_height_m: float, lens_offset_m: float = 0.0) 
 
 
 def _site(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray, band: GroundBand, box: Box, lens_offset_m: float) -> TowerSite:
-    drawn, hung, _ = drawn_as_tagged(found)
+    drawn, hung, _ = supports_and_spans(found)
     places = frame.to_metres(found.position)
     order = [own, *(place for place in range(len(drawn)) if place != own)]
     number = {place: count for count, place in enumerate(order)}
