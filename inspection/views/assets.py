@@ -130,8 +130,8 @@ class AssetDetail(APIView):
 
     @extend_schema(
         operation_id="delete_asset",
-        summary="Take an asset off the ground",
-        description="Its history can bring it back. What came from a file is kept as vanished, so that the next import leaves it away.",
+        summary="Delete an asset",
+        description="Its history can bring it back. An asset from a file is kept as vanished, so that the next import leaves it out.",
         parameters=[IF_MATCH_REQUIRED],
         responses={204: None} | PRECONDITION_ANSWERS,
     )

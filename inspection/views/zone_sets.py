@@ -78,7 +78,7 @@ class ZoneSetDetail(APIView):
 
     @extend_schema(
         operation_id="empty_zone_set",
-        summary="Take all zones of a set off the ground",
+        summary="Delete all zones of a set",
         description="The set stays, without zones: each of its versions can be brought back. What is fetched for it is paused.",
         responses={204: None},
     )

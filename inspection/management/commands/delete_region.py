@@ -10,22 +10,22 @@ from inspection.services.regions import AssetGroup, counts_of_group, delete_asse
 
 class Command(BaseCommand):
     help = (
-        "Take the assets of a box, of one import or of one set off the ground, except what was drawn or edited by hand. Missions keep what "
-        "they point at, and the next file that has an asset brings it back. Shows what would go unless --yes is given."
+        "Delete the assets of a box, of one import or of one set, except those that were drawn or edited by hand. Missions keep their "
+        "references, and the next file that has an asset restores it. Without --yes it only counts them."
     )
 
     def add_arguments(self, parser: CommandParser) -> None:
         which = parser.add_mutually_exclusive_group(required=True)
-        which.add_argument("--bbox", help="west,south,east,north in degrees; what reaches into it goes too")
+        which.add_argument("--bbox", help="west,south,east,north in degrees; assets that intersect it")
         which.add_argument("--import", dest="data_import", type=int, help="number of a data import, as the admin lists them")
         which.add_argument("--set", dest="asset_set", help="name of a set of assets that came from other files than OpenStreetMap's")
-        parser.add_argument("--yes", action="store_true", help="do it")
+        parser.add_argument("--yes", action="store_true", help="delete them")
 
     def handle(self, *args: Any, **options: Any) -> None:
         group = self._group(options)
         counts = delete_assets(group=group, actor=None) if options["yes"] else counts_of_group(group)
         words = ", ".join(f"{number} {kind}" for kind, number in sorted(counts.items())) or "nothing"
-        self.stdout.write(f"{words} taken off the ground" if options["yes"] else f"{words} would go; --yes does it")
+        self.stdout.write(f"{words} deleted" if options["yes"] else f"{words} would be deleted; --yes deletes")
 
     def _group(self, options: dict[str, Any]) -> AssetGroup:
         if options["bbox"]:

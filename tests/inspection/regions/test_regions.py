@@ -1,4 +1,4 @@
-"""A region is taken off the ground as a whole, and a file brings it back."""
+"""A region is deleted as a whole, and a file restores it."""
 
 from collections.abc import Callable
 from io import StringIO
@@ -32,7 +32,7 @@ def on_the_ground() -> int:
     return Asset.objects.filter(vanished_at=None).count()
 
 
-def test_a_box_is_counted_first_and_then_taken_off(client: Client) -> None:
+def test_a_box_is_counted_first_and_then_deleted(client: Client) -> None:
     tower((10.0, 56.0))
     tower((12.0, 56.0))
     line((9.0, 56.0), (10.05, 56.05))
@@ -48,7 +48,7 @@ def test_a_box_is_counted_first_and_then_taken_off(client: Client) -> None:
 
 
 @pytest.mark.parametrize("name", ["quillmoor.osm.pbf", "liechtenstein-2021-infra.osm.pbf"])
-def test_an_import_is_taken_off_and_its_file_brings_everything_back(name: str, client: Client, region_file: Callable[[str], Path]) -> None:
+def test_an_import_is_deleted_and_its_file_restores_everything(name: str, client: Client, region_file: Callable[[str], Path]) -> None:
     file = region_file(name)
     first = import_osm(path=file)
     all_of_it = on_the_ground()
@@ -69,12 +69,12 @@ def test_operators_delete_no_region() -> None:
     assert delete(client_of(a_user(Role.OPERATOR)), bbox=[0, 0, 1, 1]).status_code == 403
 
 
-def test_the_command_shows_what_would_go_before_it_goes() -> None:
+def test_the_command_counts_before_it_deletes() -> None:
     tower((10.0, 56.0))
     reported = StringIO()
     call_command("delete_region", "--bbox=9,55,11,57", stdout=reported)
-    assert (reported.getvalue(), on_the_ground()) == ("1 tower would go; --yes does it\n", 1)
+    assert (reported.getvalue(), on_the_ground()) == ("1 tower would be deleted; --yes deletes\n", 1)
     call_command("delete_region", "--bbox=9,55,11,57", "--yes", stdout=reported)
-    assert on_the_ground() == 0
+    assert (reported.getvalue().splitlines()[-1], on_the_ground()) == ("1 tower deleted", 0)
     with pytest.raises(CommandError, match="four numbers"):
         call_command("delete_region", "--bbox=here")
