@@ -55,7 +55,7 @@ def a_type_gets_a_camera(page: Page) -> None:
 def clicks_a_cone(page: Page, panel: Locator, photos: list[dict[str, Any]]) -> None:
     """Photos may stand above one another: the row is of one that is there."""
     place = place_of(page, photos[0]["position"])
-    page.mouse.click(**place)
+    page.mouse.click(place["x"], place["y"])
     pressed = panel.locator(".photo-row[aria-pressed='true']")
     expect(pressed).to_have_count(1)
     expect(pressed).to_be_in_viewport()
