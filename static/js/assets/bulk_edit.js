@@ -11,7 +11,7 @@ import { MAX_KV, voltsOf } from "./voltages.js";
 /** @import { BulkEditOutput, BulkUndoOutput } from "../api_types.d.ts" */
 /** @import { Marked } from "../register/types.d.ts" */
 
-export const MAX_BULK = 5_000;
+const MAX_BULK = 5_000;
 /** @type {Record<string, string>} */
 const FACTS = {
   operator: t("Operator"),

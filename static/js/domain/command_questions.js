@@ -67,7 +67,7 @@ export const LATE = t("The command expires if it is not delivered in time.");
 const ABORT_DOES = t(
   "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.",
 );
-export const WHY = { name: "why", label: t("Why (kept in the history)") };
+const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /**
  * The UAV of a question, with the facts that the command needs. `returns`: from where it is now; `planned`: from all along its route.

@@ -294,7 +294,7 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
  * @param {readonly string[]} rows of modules, "1" is dark
  * @param {string} label
  */
-export function qrCode(rows, label) {
+function qrCode(rows, label) {
   const size = rows.length + 2 * QUIET;
   const path = rows.flatMap((row, y) =>
     [...row].flatMap((dark, x) => (dark === "1" ? [`M${x + QUIET} ${y + QUIET}h1v1h-1z`] : [])),

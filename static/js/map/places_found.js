@@ -24,7 +24,7 @@ const MAX_TOWNS = 3;
  * @param {string} text
  * @returns {FoundPlace[]}
  */
-export function coordinatesFound(text) {
+function coordinatesFound(text) {
   const found = positionIn(text);
   if (!found) return [];
   const orders = {
@@ -50,7 +50,7 @@ export function coordinatesFound(text) {
  * @param {NamedThing[]} things
  * @returns {FoundPlace[]}
  */
-export function namedFound(text, things) {
+function namedFound(text, things) {
   const wanted = text.trim().toLocaleLowerCase();
   if (!wanted) return [];
   return things

@@ -141,7 +141,7 @@ export const MAX_HOLD_S = 3600;
  * @param {Pick<PickedTarget, "asset" | "kind" | "position">} target
  * @returns {TaskOutput}
  */
-export function usualTask(target) {
+function usualTask(target) {
   if (target.asset === null) return { kind: "hold", hold_s: 10 };
   if (isWhole(target)) return { kind: "look", hold_s: 0 };
   return target.kind === "tower" || target.kind === "bridge"

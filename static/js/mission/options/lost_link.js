@@ -189,7 +189,7 @@ export function placesText(waypoints) {
 }
 
 /** @param {number} return_point */
-export const returnPointText = (return_point) => (return_point === 0 ? t("its start") : rallyName(return_point - 1));
+const returnPointText = (return_point) => (return_point === 0 ? t("its start") : rallyName(return_point - 1));
 
 /** Wh to a tenth: the shortfall may be small. @param {number} missing_wh */
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
@@ -228,7 +228,7 @@ export function failureText({ waypoints, return_point, trouble, zone, missing_wh
 const flownOf = (plan) => plan.result.routes.filter(({ geometry }) => geometry);
 
 /** UAVs without an energy model: their return may still be too long. @param {ShownPlan} plan */
-export const uncountedOf = (plan) =>
+const uncountedOf = (plan) =>
   flownOf(plan)
     .filter(({ energy_wh }) => energy_wh === null || energy_wh === undefined)
     .map(({ uav }) => uav);

@@ -27,7 +27,7 @@ import { scaleOf } from "./span_strip.js";
  * @property {(target: number | null) => void} [onTask]
  */
 
-export const PROFILE_HEIGHT_PX = 96;
+const PROFILE_HEIGHT_PX = 96;
 const TOP_PX = 14;
 const FLOOR_PX = PROFILE_HEIGHT_PX - 4;
 const BATTERY_PX = { full: PROFILE_HEIGHT_PX + 8, empty: PROFILE_HEIGHT_PX + 36 };
