@@ -2,8 +2,9 @@
 
 import { get } from "../api.js";
 import { byId, h, setChildren } from "../dom.js";
+import { filterField, withCount } from "../register/filters.js";
 import { t } from "../text.js";
-import { numberText, voltageText } from "../units.js";
+import { voltageText } from "../units.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { AssetCounts, AssetFeature } from "../api_types.d.ts" */
@@ -46,11 +47,11 @@ export function mountFilters(regions, change) {
   );
   setChildren(inspected, ...INSPECTED.map(([value, words]) => h("option", { value }, words)));
   const fields = [
-    field(t("Voltage"), voltage),
-    field(t("Operator"), operator),
-    field(t("On the line"), line.input, line.choices),
-    regions.length > 1 ? field(t("Region"), region) : null,
-    field(t("Last inspection"), inspected),
+    filterField(t("Voltage"), voltage),
+    filterField(t("Operator"), operator),
+    filterField(t("On the line"), line.input, line.choices),
+    regions.length > 1 ? filterField(t("Region"), region) : null,
+    filterField(t("Last inspection"), inspected),
   ];
   const clear = h("button", { type: "button", class: "text-button", onclick: () => reset() }, t("Clear the filters"));
   setChildren(byId("asset-filters"), ...fields, clear);
@@ -111,13 +112,6 @@ export function mountFilters(regions, change) {
     },
   };
 }
-
-/** @param {string} words @param {number} count */
-const withCount = (words, count) => `${words} (${numberText(count)})`;
-
-/** @param {string} label @param {HTMLElement} control @param {...HTMLElement} more */
-const field = (label, control, ...more) =>
-  h("div", { class: "filter" }, h("label", { for: control.id }, label), control, more);
 
 /** A line is found by its name, reference or operator, and chosen from the proposals. @param {() => unknown} change */
 function mountLineFilter(change) {

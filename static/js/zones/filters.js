@@ -2,18 +2,12 @@
 
 import { byId, h, setChildren } from "../dom.js";
 import { plainWords } from "../map/tips.js";
+import { filterField, withCount } from "../register/filters.js";
 import { t } from "../text.js";
-import { numberText } from "../units.js";
 
 /** @import { ValueCount, ZoneCounts, ZoneSet } from "../api_types.d.ts" */
 
 const NOT_STATED = "not_stated"; // as the API names it
-
-/** @param {string} words @param {number} count */
-const withCount = (words, count) => `${words} (${numberText(count)})`;
-
-/** @param {string} label @param {HTMLElement} control */
-const field = (label, control) => h("div", { class: "filter" }, h("label", { for: control.id }, label), control);
 
 /**
  * Replace the choices of a filter. The chosen value stays, also where no zone has it.
@@ -53,10 +47,10 @@ export function mountZoneFilters(change) {
   };
   setChildren(
     byId("zone-filters"),
-    field(t("Restriction"), restriction),
-    field(t("Reason"), reason),
-    field(t("Zone set"), set),
-    field(t("Applies"), when),
+    filterField(t("Restriction"), restriction),
+    filterField(t("Reason"), reason),
+    filterField(t("Zone set"), set),
+    filterField(t("Applies"), when),
     h("button", { type: "button", class: "text-button", onclick: clear }, t("Clear the filters")),
   );
   const fold = byId("filter-fold", HTMLDetailsElement);
