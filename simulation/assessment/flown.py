@@ -7,6 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import Flight, FrozenRoute, FrozenWaypoint
 from operation.reasons import Reason
@@ -15,6 +16,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 NO_WAYPOINT = -1
+MAX_PHOTOS = 5_000  # of a flight: more than a battery lasts for at one a second
 
 
 class TrackEnding(StrEnum):
@@ -23,6 +25,25 @@ class TrackEnding(StrEnum):
     CRASHED = "crashed"
     UNFINISHED = "unfinished"  # not finished within the time limit
     REFUSED = "refused"  # it did not take off
+
+
+@dataclass(frozen=True, slots=True)
+class FlownPhoto:
+    """One photo: the true pose of its lens. t_s as in a track; yaw from true north, pitch from the horizon (negative down).
+
+    `item` is the place of the request in the flight's list, `sequence` its number there; `waypoint` as in a track.
+    """
+
+    t_s: float
+    position: LonLat
+    amsl_m: float
+    relative_m: float
+    yaw_deg: float
+    pitch_deg: float
+    roll_deg: float
+    waypoint: int
+    item: int | None
+    sequence: int | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +58,7 @@ class FlownTrack:
     waypoint        sequence of the route's waypoint that it flies to, NO_WAYPOINT before and after
     is_coming_down  whether it descends to land
     attitude_deg    (n, 3), roll right wing down, pitch nose up, heading from true north
+    photos          the first MAX_PHOTOS
     """
 
     t_s: FloatArray
@@ -51,6 +73,7 @@ class FlownTrack:
     attitude_deg: FloatArray
     ending: TrackEnding
     stated: tuple[Reason | str, ...] = ()
+    photos: tuple[FlownPhoto, ...] = ()
 
     def __len__(self) -> int:
         return len(self.t_s)

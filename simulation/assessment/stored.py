@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from simulation.assessment.closest_approach import ClosestApproach
-from simulation.assessment.flown import FlownTrack
+from simulation.assessment.flown import FlownPhoto, FlownTrack
 from simulation.assessment.following import Error
 from simulation.assessment.judging import Assessment, RouteAssessment, TargetAssessment
 from simulation.assessment.limits import AssessmentFinding
 from simulation.assessment.obstacles import Approach, ZoneApproach
 
 METRE_DIGITS, SECOND_DIGITS, PERCENT_DIGITS, DEGREE_DIGITS, ANGLE_DIGITS = 2, 1, 1, 7, 1
+PHOTO_SECOND_DIGITS, PHOTO_DEGREE_DIGITS, PHOTO_ANGLE_DIGITS = 2, 8, 2  # a millimetre and a hundredth of a degree
 ANGLES = ("roll_deg", "pitch_deg", "heading_deg")
 TRACK_STEP_S = 1.0
 
@@ -49,6 +50,22 @@ def _track(track: FlownTrack) -> dict[str, Any]:
         "used_wh": _column(track.used_wh[rows].tolist(), METRE_DIGITS),
         **{name: _column(track.attitude_deg[rows, at].tolist(), ANGLE_DIGITS) for at, name in enumerate(ANGLES)},
         "waypoint": [None if waypoint < 0 else waypoint for waypoint in track.waypoint[rows].tolist()],
+        "photos": [_photo(photo) for photo in track.photos],
+    }
+
+
+def _photo(photo: FlownPhoto) -> dict[str, Any]:
+    return {
+        "t_s": round(photo.t_s, PHOTO_SECOND_DIGITS),
+        "position": [round(photo.position.lon, PHOTO_DEGREE_DIGITS), round(photo.position.lat, PHOTO_DEGREE_DIGITS)],
+        "altitude_amsl_m": round(photo.amsl_m, METRE_DIGITS),
+        "altitude_relative_m": round(photo.relative_m, METRE_DIGITS),
+        "yaw_deg": round(photo.yaw_deg, PHOTO_ANGLE_DIGITS),
+        "pitch_deg": round(photo.pitch_deg, PHOTO_ANGLE_DIGITS),
+        "roll_deg": round(photo.roll_deg, PHOTO_ANGLE_DIGITS),
+        "waypoint": _waypoint(photo.waypoint),
+        "item": photo.item,
+        "sequence": photo.sequence,
     }
 
 

@@ -2,13 +2,14 @@
 
 import math
 
+from inspection.geodesy import LonLat
 from operation.reasons import Reason
 from simulation.flight.airframe import OwnAction
 from simulation.flight.body import OFF_GROUND_M, STEADY_M, Body, Contact
+from simulation.flight.camera import LensPose, Shot, lens_offset_m
 from simulation.flight.events import Armed, Crashed, Disarmed, LandedAt, ModeChanged, PhotoTaken, TookOff
 from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.manoeuvres import Hold, Land, Manoeuvre, Return
-from simulation.flight.mission import MissionManoeuvre
 from simulation.flight.plant import GUIDANCE_STEP_S, CameApart
 from simulation.flight.states import FlightMode, Severity
 
@@ -80,8 +81,9 @@ def _manoeuvre(action: OwnAction) -> Manoeuvre | None:
 class Autopilot:
     """The autopilot. `revision` counts its changes."""
 
-    def __init__(self, body: Body, context: ManoeuvreContext) -> None:
-        self.body, self.context = body, context
+    def __init__(self, body: Body, context: ManoeuvreContext, lens_m: tuple[float, float, float]) -> None:
+        """lens_m: of the camera's lens from the antenna, forward, right and up."""
+        self.body, self.context, self.lens_m = body, context, lens_m
         self.manoeuvre: Manoeuvre = Hold()
         self.is_crashed = False
         self.revision = 0
@@ -122,7 +124,10 @@ class Autopilot:
         context = self.context
         context.now_s = self.now_s
         self.body.navigate(is_gps_lost=self.is_gps_lost)
-        if self.is_crashed or self._is_parked():
+        if self.is_crashed:
+            return
+        if self._is_parked():
+            self._operate_camera()
             return
         self.body.air.step(context.agl_m)
         self._fly()
@@ -133,6 +138,7 @@ class Autopilot:
             return
         self._look_around()
         self._touch()
+        self._operate_camera()
 
     def _is_parked(self) -> bool:
         """Return whether it is disarmed and at rest on the ground: then only time advances."""
@@ -163,8 +169,6 @@ class Autopilot:
             self._wait_on_ground()
             if not context.is_armed:
                 return
-        if context.camera.is_due(context.now_s, context.flown_m):
-            self._take_photo()
         self._command()
 
     def _command(self) -> None:
@@ -175,8 +179,8 @@ class Autopilot:
         if not context.is_in_air and not self.manoeuvre.lifts_off:
             up = -1.0
         u, v, _ = command.along
-        if context.looks_at is not None:
-            x, y = context.looks_at[0] - context.here[0], context.looks_at[1] - context.here[1]
+        if context.gimbal.target is not None and not context.gimbal.pans:
+            x, y = context.gimbal.target[0] - context.here[0], context.gimbal.target[1] - context.here[1]
             if math.hypot(x, y) > 0.5:
                 self._heading_rad = math.atan2(x, y)
         elif context.heading_deg is not None:
@@ -238,8 +242,8 @@ class Autopilot:
             context.events.append(Disarmed(self.now_s))
         if not context.is_in_air:
             self.body.plant.set_grounded(True)
-            context.camera.stop()
-            context.heading_deg = context.looks_at = None
+            context.camera.reset()
+            context.look_ahead()
             if self.manoeuvre.mode is not FlightMode.HOLD:
                 self.begin(Hold(), is_own=True)
         self.revision += 1
@@ -253,8 +257,27 @@ class Autopilot:
         context.report(Reason("crashed", {"reason": reason}), Severity.CRITICAL)
         self.body.stop()
 
-    def _take_photo(self) -> None:
+    def _operate_camera(self) -> None:
+        if self.is_crashed:
+            return
+        context = self.context
+        context.gimbal.step(GUIDANCE_STEP_S, context.here, context.facing_deg)
+        shot = context.camera.due(context.now_s, context.flown_m)
+        if shot is not None:
+            self._take_photo(shot)
+
+    def _take_photo(self, shot: Shot) -> None:
         context, motion = self.context, self.body.motion
+        east_m, north_m, up_m = lens_offset_m(self.lens_m, motion.roll_rad, motion.pitch_rad, motion.heading_rad)
+        frame, attitude = context.frame, context.gimbal.attitude
+        pose = LensPose(
+            LonLat(motion.lon_deg + east_m / frame.metres_per_degree_east, motion.lat_deg + north_m / frame.metres_per_degree_north),
+            motion.altitude_amsl_m + up_m,
+            motion.altitude_amsl_m - context.home_amsl_m + up_m,
+            (context.facing_deg + attitude.yaw_deg) % 360.0,
+            attitude.pitch_deg,
+        )
         position = context.position_of(context.here)
-        item = self.manoeuvre.index if isinstance(self.manoeuvre, MissionManoeuvre) else None
-        context.events.append(PhotoTaken(self.now_s, context.camera.number, position, motion.altitude_amsl_m, context.facing_deg, item))
+        context.events.append(
+            PhotoTaken(self.now_s, context.camera.number, position, motion.altitude_amsl_m, shot.item, shot.sequence, pose)
+        )

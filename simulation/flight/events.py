@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from inspection.geodesy import LonLat
 from operation.reasons import Reason
+from simulation.flight.camera import LensPose
 from simulation.flight.states import FlightMode, Severity
 
 
@@ -33,14 +34,19 @@ class ModeChanged:
 
 @dataclass(frozen=True, slots=True)
 class PhotoTaken:
-    """Photo `number` since the start, counted from 1, with its position and heading."""
+    """Photo `number` since the start, counted from 1.
+
+    `position` is the one that the UAV reports for it, `pose` the true one of the lens. `item` is the mission item that asked for it, in the
+    loaded list, and `sequence` the number of that request; None without.
+    """
 
     at_s: float
     number: int
     position: LonLat
     altitude_amsl_m: float
-    heading_deg: float
     item: int | None
+    sequence: int | None
+    pose: LensPose
 
 
 @dataclass(frozen=True, slots=True)

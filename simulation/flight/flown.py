@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from inspection.geodesy import LonLat
-from simulation.flight.events import Crashed, Event
+from simulation.flight.events import Crashed, Event, PhotoTaken
 from simulation.flight.states import FlightMode, MissionItemState, OrderRefused, SimulatedState
 from simulation.flight.uav import SimulatedUav
 
@@ -45,6 +45,10 @@ class FlownFlightLog:
     @property
     def crash(self) -> Crashed | None:
         return next((event for event in self.events if isinstance(event, Crashed)), None)
+
+    @property
+    def photos(self) -> tuple[PhotoTaken, ...]:
+        return tuple(event for event in self.events if isinstance(event, PhotoTaken))
 
     @property
     def touched_down_at(self) -> LonLat | None:

@@ -7,12 +7,13 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from operation.reasons import Reason
 from simulation.flight.airframe import Airframe, Settings
-from simulation.flight.camera import Camera
+from simulation.flight.camera import CameraShutter
 from simulation.flight.course import Vector, Via, course
 from simulation.flight.events import Event, StatusTextSent
 from simulation.flight.faults import Faults
+from simulation.flight.gimbal import StabilisedGimbal
 from simulation.flight.guidance import Gate, Guidance
-from simulation.flight.orders import Above, OrderPlace
+from simulation.flight.orders import Above, LookAt, Order, OrderPlace, PointCamera, StopPhotos, TakePhotos, Turn
 from simulation.flight.plant import GroundElevation
 from simulation.flight.states import RallyPoint, Severity
 
@@ -21,7 +22,7 @@ from simulation.flight.states import RallyPoint, Severity
 class ManoeuvreContext:
     """Vectors are metres to east, north and up of the home; `here` is the UAV's estimated position.
 
-    `looks_at` and `heading_deg` override the heading along the course; `looks_at` has precedence.
+    `heading_deg` overrides the heading along the course; so does the gimbal's target where the gimbal has no yaw, with precedence.
     """
 
     airframe: Airframe
@@ -31,7 +32,8 @@ class ManoeuvreContext:
     home_amsl_m: float
     frame: LocalFrame
     guidance: Guidance
-    camera: Camera
+    gimbal: StabilisedGimbal
+    camera: CameraShutter
     speed_mps: float
     faults: Faults = field(default_factory=Faults)
     now_s: float = 0.0
@@ -43,7 +45,6 @@ class ManoeuvreContext:
     flown_m: float = 0.0
     is_armed: bool = False
     is_in_air: bool = False
-    looks_at: Vector | None = None
     heading_deg: float | None = None
     events: list[Event] = field(default_factory=list)
 
@@ -70,6 +71,36 @@ class ManoeuvreContext:
             return east_m, north_m, place.height_m - self.home_amsl_m
         ground_m = self.ground.elevation_m(self.position_of((east_m, north_m, 0.0)))
         return east_m, north_m, place.height_m + (ground_m - self.home_amsl_m if math.isfinite(ground_m) else 0.0)
+
+    def look_at(self, place: OrderPlace | None) -> None:
+        """Look at a place; None: ahead again."""
+        if place is None:
+            self.gimbal.centre()
+        else:
+            self.gimbal.look_at(self.vector_of(place))
+
+    def do(self, order: Order, item: int | None = None) -> bool:
+        """Carry out an order to gimbal, nose or camera. Returns False for other orders. item: of the mission that holds the order."""
+        if isinstance(order, LookAt):
+            self.look_at(order.place)
+        elif isinstance(order, PointCamera):
+            self.gimbal.turn(order.pitch_deg, order.yaw_deg, is_from_north=order.is_from_north)
+            if order.turns_uav and not self.gimbal.pans and order.yaw_deg is not None:
+                self.heading_deg = order.yaw_deg % 360.0
+        elif isinstance(order, Turn):
+            before_deg = self.facing_deg if order.is_relative else 0.0
+            self.heading_deg = (before_deg + order.angle_deg) % 360.0
+        elif isinstance(order, TakePhotos):
+            self.camera.start(order, self.now_s, self.flown_m, item)
+        elif isinstance(order, StopPhotos):
+            self.camera.stop()
+        else:
+            return False
+        return True
+
+    def look_ahead(self) -> None:
+        self.heading_deg = None
+        self.gimbal.centre()
 
     def nearest_rally_point(self) -> Vector:
         """Return the destination of RTL: home or a nearer rally point, with the point's own height."""

@@ -33,11 +33,16 @@ class MissionManoeuvre:
         return self._part is not None and self._part.is_landing
 
     def begin(self, context: ManoeuvreContext) -> None:
-        """Begin at the UAV's position. An interrupted item is started again, with the view direction of the items before it."""
+        """Begin at the UAV's position. An interrupted item is started again, with the view direction of the items before it.
+
+        Angles that an item leaves open are those of the items before.
+        """
         self._part, self._waits_until_s, self._run_end = None, None, None
-        looks = [order for order in self.orders[: self.index] if isinstance(order, flown.LookAt)]
-        if looks:
-            self._do(context, looks[-1])
+        done = self.orders[: self.index]
+        last_target = max((index for index, order in enumerate(done) if isinstance(order, flown.LookAt)), default=0)
+        for order in done[last_target:]:
+            if isinstance(order, flown.LookAt | flown.PointCamera):
+                self._do(context, order)
         if context.is_in_air:
             context.stand()
 
@@ -167,15 +172,8 @@ class MissionManoeuvre:
         """Carry out an order that takes no time."""
         if isinstance(order, flown.SetSpeed):
             context.speed_mps = min(order.speed_mps, context.airframe.max_speed_mps)
-        elif isinstance(order, flown.LookAt):
-            context.looks_at = None if order.place is None else context.vector_of(order.place)
-        elif isinstance(order, flown.Turn):
-            before_deg = context.facing_deg if order.is_relative else 0.0
-            context.heading_deg = (before_deg + order.angle_deg) % 360.0
-        elif isinstance(order, flown.TakePhotos):
-            context.camera.start(order, context.now_s, context.flown_m)
-        elif isinstance(order, flown.StopPhotos):
-            context.camera.stop()
+        else:
+            context.do(order, self.index)
 
     def _jump(self, context: ManoeuvreContext, order: flown.Jump) -> bool:
         done = self._jumped.get(self.index, 0)

@@ -89,6 +89,19 @@ class LookAt:
 
 
 @dataclass(frozen=True, slots=True)
+class PointCamera:
+    """Turn the gimbal; None: keep the angle. `is_from_north`: the yaw is from true north, else from the nose.
+
+    `turns_uav`: where the gimbal has no yaw, the UAV turns to this heading, as ArduCopter does for DO_MOUNT_CONTROL.
+    """
+
+    pitch_deg: float | None
+    yaw_deg: float | None
+    is_from_north: bool = False
+    turns_uav: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Turn:
     """Turn to a heading, or by an angle."""
 
@@ -98,11 +111,12 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class TakePhotos:
-    """`count` 0: until stopped; by time if `interval_s` is positive, by distance if `distance_m` is."""
+    """`count` 0: until stopped; by time if `interval_s` is positive, by distance if `distance_m` is. `sequence` numbers a single photo."""
 
     count: int
     interval_s: float = 0.0
     distance_m: float = 0.0
+    sequence: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,11 +134,27 @@ class Jump:
 
 @dataclass(frozen=True, slots=True)
 class Nothing:
-    """An item that is accepted without effect: servos, gimbals, markers."""
+    """An item that is accepted without effect: servos, markers."""
 
 
-Order = TakeOffOrder | FlyTo | FlyAround | LandAt | ReturnHome | Wait | SetSpeed | LookAt | Turn | TakePhotos | StopPhotos | Jump | Nothing
+Order = (
+    TakeOffOrder
+    | FlyTo
+    | FlyAround
+    | LandAt
+    | ReturnHome
+    | Wait
+    | SetSpeed
+    | LookAt
+    | PointCamera
+    | Turn
+    | TakePhotos
+    | StopPhotos
+    | Jump
+    | Nothing
+)
 NOTHING = Nothing()
+CENTRE = PointCamera(0.0, 0.0)
 
 
 class CannotFly(ValueError):
@@ -144,10 +174,8 @@ _IGNORED = frozenset(
         mavlink.MAV_CMD_DO_LAND_START,
         mavlink.MAV_CMD_DO_GRIPPER,
         mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,
-        mavlink.MAV_CMD_DO_MOUNT_CONTROL,
         mavlink.MAV_CMD_DO_DIGICAM_CONFIGURE,
         mavlink.MAV_CMD_DO_FENCE_ENABLE,
-        mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
         mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE,
         mavlink.MAV_CMD_SET_CAMERA_MODE,
         mavlink.MAV_CMD_SET_CAMERA_ZOOM,
@@ -203,12 +231,19 @@ def _order(index: int, item: MissionItem) -> Order:
         return LookAt(None if is_end else _place(index, item))
     if command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
         return LookAt(None)
+    if command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
+        return _gimbal_angles(index, item)
+    if command == mavlink.MAV_CMD_DO_MOUNT_CONTROL:
+        return _mount(index, item)
     if command == mavlink.MAV_CMD_CONDITION_YAW:
         angle_deg = _within(index, one, -360.0, 360.0, 1)
         return Turn(angle_deg * (-1.0 if four > 0.0 and three < 0.0 else 1.0), is_relative=four > 0.0)
     if command == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
         count = 1 if math.isnan(three) else int(_within(index, three, 0.0, 1e6, 3))
-        return TakePhotos(count, interval_s=_seconds(index, two, 2))
+        is_numbered = count == 1 and four >= 1.0  # false for NaN, too
+        return TakePhotos(
+            count, interval_s=_seconds(index, two, 2), sequence=int(_within(index, four, 1.0, 2**31, 4)) if is_numbered else None
+        )
     if command == mavlink.MAV_CMD_IMAGE_STOP_CAPTURE:
         return StopPhotos()
     if command == mavlink.MAV_CMD_DO_DIGICAM_CONTROL:
@@ -221,6 +256,35 @@ def _order(index: int, item: MissionItem) -> Order:
     if command in _IGNORED:
         return NOTHING
     raise CannotFly(index, "unsupported", f"command {command} is not known to this UAV.")
+
+
+def _gimbal_angles(index: int, item: MissionItem) -> Order:
+    """Return the order of DO_GIMBAL_MANAGER_PITCHYAW; parameter 5, in place of a latitude, holds its flags."""
+    pitch_deg, yaw_deg, flags = item.parameters[0], item.parameters[1], item.latitude_e7
+    if flags & (mavlink.GIMBAL_MANAGER_FLAGS_NEUTRAL | mavlink.GIMBAL_MANAGER_FLAGS_RETRACT):
+        return CENTRE
+    named = flags & (mavlink.GIMBAL_MANAGER_FLAGS_YAW_IN_EARTH_FRAME | mavlink.GIMBAL_MANAGER_FLAGS_YAW_IN_VEHICLE_FRAME)
+    from_north = mavlink.GIMBAL_MANAGER_FLAGS_YAW_IN_EARTH_FRAME if named else mavlink.GIMBAL_MANAGER_FLAGS_YAW_LOCK
+    return PointCamera(_angle(index, pitch_deg, 180.0, 1), _angle(index, yaw_deg, 720.0, 2), is_from_north=bool(flags & from_north))
+
+
+def _mount(index: int, item: MissionItem) -> Order:
+    """Return the order of DO_MOUNT_CONTROL: its mode is parameter 7. As a mission item ArduPilot keeps the angles alone."""
+    pitch_deg, _, yaw_deg, height_m = item.parameters
+    mode = 0 if math.isnan(item.altitude_m) else int(item.altitude_m)
+    if mode == mavlink.MAV_MOUNT_MODE_GPS_POINT:
+        target = MissionItem(
+            mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, (0.0, 0.0, 0.0, 0.0),
+            item.longitude_e7, item.latitude_e7, height_m,
+        )  # fmt: skip
+        return LookAt(_place(index, target))
+    if mode == mavlink.MAV_MOUNT_MODE_NEUTRAL or not (pitch_deg or yaw_deg or mode == mavlink.MAV_MOUNT_MODE_MAVLINK_TARGETING):
+        return CENTRE
+    return PointCamera(_angle(index, pitch_deg, 90.0, 1), _angle(index, yaw_deg, 360.0, 3), turns_uav=True)
+
+
+def _angle(index: int, value: float, most_deg: float, parameter: int) -> float | None:
+    return None if math.isnan(value) else _within(index, value, -most_deg, most_deg, parameter)
 
 
 def _place(index: int, item: MissionItem) -> OrderPlace:

@@ -5,6 +5,7 @@ from enum import StrEnum
 
 from inspection.geodesy import LonLat
 from operation.reasons import Reason
+from simulation.flight.gimbal import AHEAD, GimbalAttitude
 
 
 class FlightMode(StrEnum):
@@ -62,7 +63,7 @@ class SimulatedState:
 
     `position` is the estimated position, which the UAV reports and flies by; `true_position` is the real one. They only differ without GPS
     and shortly after. Heights are true: AMSL, above home, and above ground. Velocity, wind (the air's velocity) and rates are in m/s and
-    degrees per second, to north, east and down.
+    degrees per second, to north, east and down. `photos` counts those since the start.
     """
 
     at_s: float
@@ -96,6 +97,8 @@ class SimulatedState:
     home: LonLat
     home_amsl_m: float
     target_speed_mps: float
+    gimbal: GimbalAttitude = AHEAD
+    photos: int = 0
 
 
 @dataclass(frozen=True, slots=True)

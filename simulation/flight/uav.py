@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
 from operation.reasons import Reason
+from planning.views.camera import Camera
 from simulation.flight.airframe import Airframe, Settings
 from simulation.flight.autopilot import Autopilot
 from simulation.flight.body import Body
-from simulation.flight.camera import Camera
+from simulation.flight.camera import SIMULATED_CAMERA, CameraShutter
 from simulation.flight.events import Event
 from simulation.flight.faults import Faults, Weather
+from simulation.flight.gimbal import StabilisedGimbal
 from simulation.flight.guidance import Guidance
 from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, TakeOffManoeuvre
@@ -80,6 +82,8 @@ def reported(
         home=context.home,
         home_amsl_m=context.home_amsl_m,
         target_speed_mps=context.speed_mps,
+        gimbal=context.gimbal.attitude,
+        photos=context.camera.number,
     )
 
 
@@ -110,12 +114,13 @@ class SimulatedUav:
         battery_percent: float = 100.0,
         settings: Settings | None = None,
         faults: Faults | None = None,
+        camera: Camera = SIMULATED_CAMERA,
         physics_hz: int = 250,
     ) -> None:
         if not (abs(home.lon) <= 180.0 and abs(home.lat) < 89.9 and math.isfinite(heading_deg) and 0.0 <= battery_percent <= 100.0):
             raise ValueError("A UAV stands somewhere on earth, faces somewhere, and its battery holds from 0 to 100 %.")
         ground = ground or FlatGround()
-        self.airframe = airframe
+        self.airframe, self.camera = airframe, camera
         self._body = body = Body(
             airframe,
             home,
@@ -134,7 +139,8 @@ class SimulatedUav:
             home_amsl_m=body.home_amsl_m,
             frame=body.frame,
             guidance=Guidance(airframe),
-            camera=Camera(),
+            gimbal=StabilisedGimbal(camera.gimbal),
+            camera=CameraShutter(camera.min_interval_s),
             speed_mps=airframe.cruise_speed_mps,
             facing_deg=heading_deg,
         )
@@ -142,7 +148,7 @@ class SimulatedUav:
         self._orders: tuple[Order, ...] = ()
         self._first = 0
         self._mission: MissionManoeuvre | None = None
-        self._pilot = Autopilot(body, self._context)
+        self._pilot = Autopilot(body, self._context, camera.offset_m)
         self._state: SimulatedState | None = None
         self._reported_at = -1
         self.faults = faults or Faults()
@@ -287,6 +293,14 @@ class SimulatedUav:
             self._pilot.begin(self._mission)
         return DONE
 
+    def operate(self, item: MissionItem) -> Outcome:
+        """Carry out an item to gimbal, nose or camera at once, as a command does."""
+        try:
+            (order,) = orders((item,), is_home_first=False)
+        except CannotFly as error:
+            return OrderRefused(error.code, str(error))
+        return DONE if self._context.do(order) else OrderRefused("unsupported", "It is an order for missions alone.")
+
     def _fly_mission(self) -> Outcome:
         if self._mission is None:
             return OrderRefused("no-mission", Reason("no_mission"))
@@ -299,7 +313,7 @@ class SimulatedUav:
     def _order(self, manoeuvre: Manoeuvre) -> Outcome:
         if self.is_crashed:
             return OrderRefused("crashed", "The UAV has crashed.")
-        self._context.heading_deg = self._context.looks_at = None
+        self._context.look_ahead()
         self._pilot.begin(manoeuvre)
         return DONE
 

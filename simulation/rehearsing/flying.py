@@ -11,7 +11,8 @@ from inspection.geodesy import LonLat
 from mavlink.approved_route import HOVER, Flight, FrozenRoute
 from mavlink.vehicle_plan import MissionItem
 from operation.reasons import Reason
-from simulation.assessment.flown import NO_WAYPOINT, AssessedRoute, FlownFlight, FlownTrack, TrackEnding
+from simulation.assessment.flown import MAX_PHOTOS, NO_WAYPOINT, AssessedRoute, FlownFlight, FlownPhoto, FlownTrack, TrackEnding
+from simulation.flight.events import PhotoTaken
 
 TAKE_OFF, LAND_ITEM = 22, 21  # MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND
 STEP_S = 0.04  # of a UAV's step
@@ -36,6 +37,7 @@ class RehearsedVehicle(Protocol):
     def take_off(self, height_relative_m: float) -> Any: ...
     def start_mission(self) -> Any: ...
     def take_texts(self) -> Sequence[Reason | str]: ...
+    def take_photos(self) -> Sequence[PhotoTaken]: ...
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,7 @@ class _Rows:
 
     rows: list[tuple[float, ...]] = field(default_factory=list)
     texts: list[Reason | str] = field(default_factory=list)
+    photos: list[FlownPhoto] = field(default_factory=list)
 
 
 class _Flyer:
@@ -201,6 +204,15 @@ class _Flyer:
             state.battery_used_wh, waypoint, state.is_in_air, is_coming_down, state.roll_deg, state.pitch_deg, state.heading_deg,
         ))  # fmt: skip
         self._rows.texts += vehicle.take_texts()
+        self._rows.photos += map(self._photo, vehicle.take_photos())
+
+    def _photo(self, taken: PhotoTaken) -> FlownPhoto:
+        pose = taken.pose
+        waypoint = None if taken.item is None else self._items[taken.item].waypoint
+        return FlownPhoto(
+            self._begins_s + taken.at_s, pose.position, pose.altitude_amsl_m, pose.altitude_relative_m, pose.yaw_deg, pose.pitch_deg,
+            pose.roll_deg, NO_WAYPOINT if waypoint is None else waypoint, taken.item, taken.sequence,
+        )  # fmt: skip
 
     def _end(self, ending: TrackEnding) -> None:
         columns = np.array(self._rows.rows, dtype=np.float64)
@@ -217,6 +229,7 @@ class _Flyer:
             attitude_deg=columns[:, 10:13],
             ending=ending,
             stated=tuple(self._rows.texts),
+            photos=tuple(self._rows.photos[:MAX_PHOTOS]),
         )
         self._flown.append(FlownFlight(self._flight, track))
         self._begins_s, self._vehicle = float(track.t_s[-1]) + self._turnaround_s, None

@@ -189,6 +189,21 @@ class RehearsalPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
+class FlownPhotoSerializer(serializers.Serializer):
+    """A photo with the true pose of its lens."""
+
+    t_s = serializers.FloatField(help_text="after the mission's departure")
+    position = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="longitude, latitude [deg]")
+    altitude_amsl_m = serializers.FloatField()
+    altitude_relative_m = serializers.FloatField(help_text="above where this flight took off")
+    yaw_deg = serializers.FloatField(help_text="from true north, clockwise")
+    pitch_deg = serializers.FloatField(help_text="from the horizon; -90 is straight down")
+    roll_deg = serializers.FloatField(help_text="right side down")
+    waypoint = serializers.IntegerField(allow_null=True, help_text="that it belongs to")
+    item = serializers.IntegerField(allow_null=True, help_text="that asked for it, in the flight's list from 0")
+    sequence = serializers.IntegerField(allow_null=True, help_text="of the request, as the item numbers it")
+
+
 class TrackFlightSerializer(serializers.Serializer):
     ending = serializers.CharField()
     t_s = serializers.ListField(child=serializers.FloatField(), help_text="after the mission's departure")
@@ -201,6 +216,7 @@ class TrackFlightSerializer(serializers.Serializer):
     pitch_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="nose up; not in tracks of before")
     heading_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="from north; not in tracks of before")
     waypoint = serializers.ListField(child=serializers.IntegerField(allow_null=True), help_text="that was flown to")
+    photos = FlownPhotoSerializer(many=True, required=False, help_text="at most 5,000; not in tracks of before")
 
 
 class PlannedPointSerializer(serializers.Serializer):

@@ -27,7 +27,7 @@ from simulation.assessment.judging import Assessment, judge, wind_finding
 from simulation.assessment.limits import AssessmentFinding, AssessmentLimits, Level, limits_to_json, worst
 from simulation.assessment.stored import assessment_to_json, track_to_json
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.events import Crashed, StatusTextSent
+from simulation.flight.events import Crashed, Event, PhotoTaken, StatusTextSent
 from simulation.flight.states import FlightMode, Outcome, Severity, SimulatedState
 from simulation.flight.uav import SimulatedUav
 from simulation.models import AssessmentLevel, Rehearsal, RehearsalRule, RehearsalRun, RehearsalTrack
@@ -55,6 +55,7 @@ class RehearsedUav:
 
     def __init__(self, uav: SimulatedUav) -> None:
         self._uav = uav
+        self._events: list[Event] = []
 
     @property
     def now_s(self) -> float:
@@ -82,10 +83,22 @@ class RehearsedUav:
 
     def take_texts(self) -> list[Reason | str]:
         """Return its problem reports since the last call. The reason of a crash is included once."""
-        events = self._uav.take_events()
+        self._take_events()
+        events = [event for event in self._events if not isinstance(event, PhotoTaken)]
+        self._events = [event for event in self._events if isinstance(event, PhotoTaken)]
         reasons = [event.reason for event in events if isinstance(event, Crashed)]
         stated = [event.text for event in events if isinstance(event, StatusTextSent) and event.severity is not Severity.INFO]
         return [text for text in stated if not (isinstance(text, Reason) and text.code == "crashed")] + reasons
+
+    def take_photos(self) -> list[PhotoTaken]:
+        """Return the photos since the last call."""
+        self._take_events()
+        photos = [event for event in self._events if isinstance(event, PhotoTaken)]
+        self._events = [event for event in self._events if not isinstance(event, PhotoTaken)]
+        return photos
+
+    def _take_events(self) -> None:
+        self._events += self._uav.take_events()
 
 
 def vehicle_maker(stand_ins: Sequence[StandIn], scenario: WeatherScenario, terrain: Heights | None) -> MakeVehicle:
@@ -100,7 +113,7 @@ def vehicle_maker(stand_ins: Sequence[StandIn], scenario: WeatherScenario, terra
         ground = BlockedGround(None if start.ground_amsl_m is None else terrain, home_m)
         uav = SimulatedUav(
             airframe, start.home, ground=ground, weather=weather, seed=start.seed, heading_deg=start.heading_deg,
-            battery_percent=scenario.battery_percent,
+            battery_percent=scenario.battery_percent, camera=stand_in.camera,
         )  # fmt: skip
         return RehearsedUav(uav)
 

@@ -23,6 +23,7 @@ from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from simulation.rehearsing.ground import BlockedGround
 from simulation.rehearsing.scenario_weather import weather_of
 from simulation.rehearsing.weather_scenario import scenario_from_json
+from simulation.services.fleet import camera_of_type
 from simulation.services.simulator_leases import (
     end_single_ones,
     end_those_over,
@@ -69,6 +70,7 @@ def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: Simula
         battery_percent=scenario.battery_percent,
         ground=BlockedGround(heights_at(planning_read().dataset_version), vehicle.ground_amsl_m or 0.0),
         weather=weather_of(scenario),
+        camera=camera_of_type(None if vehicle.uav is None else vehicle.uav.uav_type_id),
         talks_to=[] if vehicle.uav is None or options.gateway is None else [options.gateway],
         listens_at=None if vehicle.port is None else (options.host, vehicle.port),
     )

@@ -76,5 +76,5 @@ class FlyingUav:
         if self._is_link_lost:
             return
         for one in outgoing:
-            self.radio.send(self._signed.frame_of(one.message, unix_s), None if one.to is None else one.to.link)
+            self.radio.send(self._signed.frame_of(one.message, unix_s, one.component), None if one.to is None else one.to.link)
             self.sent += 1

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from inspection.geodesy import LonLat
+from planning.views.camera import Camera
 from simulation.flight.airframe import AIRFRAMES, Airframe
+from simulation.flight.camera import SIMULATED_CAMERA
 from simulation.flight.faults import Faults, Weather
 from simulation.flight.plant import FlatGround, GroundElevation
 from simulation.flight.uav import SimulatedUav
@@ -34,6 +36,7 @@ class Launch:
     ground: GroundElevation = field(default_factory=FlatGround)
     weather: Weather = field(default_factory=Weather)
     faults: Faults = field(default_factory=Faults)
+    camera: Camera = SIMULATED_CAMERA
     talks_to: Sequence[Address] = ()
     listens_at: Address | None = None
 
@@ -52,6 +55,7 @@ def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
                 heading_deg=launch.heading_deg,
                 battery_percent=launch.battery_percent,
                 faults=launch.faults,
+                camera=launch.camera,
             )
             uavs.append(FlyingUav(uav, launch.system, Radio(launch.talks_to, launch.listens_at), launch.autopilot_type, launch.key))
     except BaseException:

@@ -16,15 +16,16 @@ from simulation.flight import events
 from simulation.flight.airframe import Settings
 from simulation.flight.states import OrderRefused, Severity, SimulatedState
 from simulation.vehicle_protocol import requests
+from simulation.vehicle_protocol.camera_endpoint import CameraEndpoint
 from simulation.vehicle_protocol.command_endpoint import NotFinite, acknowledgement, command_of
 from simulation.vehicle_protocol.fence import MODES, FenceAction, FenceWatch, fence_of, rally_points_of
 from simulation.vehicle_protocol.mission_server import MissionServer
 from simulation.vehicle_protocol.mode_numbers import AUTO, SimulatedAutopilot
 from simulation.vehicle_protocol.parameters import parameters_of, settings_at_start
-from simulation.vehicle_protocol.pilot import DENIED, FAILED, UNSUPPORTED, Pilot
+from simulation.vehicle_protocol.pilot import ACCEPTED, CAMERA_COMMANDS, DENIED, FAILED, UNSUPPORTED, Pilot
 from simulation.vehicle_protocol.reports import REPORTS, SimulatedReport, heartbeat, mission_current
 from simulation.vehicle_protocol.requests import Requests
-from simulation.vehicle_protocol.streams import Outgoing, Station, Streams, is_for
+from simulation.vehicle_protocol.streams import AUTOPILOT, CAMERA, GIMBAL, Outgoing, Station, Streams, is_for
 from simulation.vehicle_protocol.vehicle import Vehicle
 
 PIECE = 50  # bytes of one STATUSTEXT
@@ -62,15 +63,20 @@ class Endpoint:
         self.streams = Streams(autopilot_type, phase=float(system))
         self.missions = MissionServer(autopilot_type, self._replace, self._home_item, self._current_item)
         self._fence = FenceWatch(autopilot_type, self.parameters)
-        self._requests = Requests(autopilot_type, system, self.streams, self._report)
+        self.camera = CameraEndpoint(vehicle.camera, autopilot_type)
+        self._requests = Requests(autopilot_type, system, self.streams, self._report, self.camera)
         self._now_s = 0.0
-        self._heartbeat_due_s = -math.inf
+        self._heartbeat_due_s = self._camera_heartbeat_due_s = -math.inf
         self._reported: tuple[int, bool] | None = None  # mode and arming of the last heartbeat
         self._texts = 0
 
     def receive(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
         """Return the answers to a message. Never raises, whatever the message contains."""
-        if station.system == self.system or not is_for(message, self.system):
+        if station.system == self.system:
+            return []
+        if getattr(message, "target_component", 0) == CAMERA and is_for(message, self.system, CAMERA):
+            return self._camera_command(message, station, now_s) if message.get_type().startswith("COMMAND_") else []
+        if not is_for(message, self.system):
             return []
         handler = _HANDLERS.get(message.get_type())
         if handler is None:
@@ -83,15 +89,19 @@ class Endpoint:
         """Return what is due; call it after each step of the flight, or more often."""
         self._now_s = now_s
         messages: list[Message] = []
+        photos: list[Outgoing] = []
         for event in self.vehicle.take_events():
             reported = _REPORTED.get(type(event))
             if reported is not None:
                 messages += reported(self, event)
+            elif isinstance(event, events.PhotoTaken):
+                photos += [Outgoing(message, None, component) for component, message in self.camera.photo(event, self._report())]
         state = self.vehicle.state
         messages += self._mind_fence(state)
         report = self._report()
-        messages += [REPORTS[number](report) for number in self.streams.due(state.at_s)]
-        return [*map(Outgoing, messages), *self._heartbeat(report, now_s), *self.missions.tick(now_s)]
+        streamed = [Outgoing(REPORTS[number](report), None, self._sender(number)) for number in self.streams.due(state.at_s)]
+        heartbeats = [*self._heartbeat(report, now_s), *self._camera_heartbeat(now_s)]
+        return [*map(Outgoing, messages), *photos, *streamed, *heartbeats, *self.missions.tick(now_s)]
 
     # Receiving
 
@@ -112,6 +122,27 @@ class Endpoint:
         except (ValueError, ArithmeticError):  # unexpected values
             result = FAILED
         return [acknowledgement(message.command, result, station), *(Outgoing(one, station) for one in wanted)]
+
+    def _camera_command(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        """Return the camera's acknowledgement of a command to it, and the requested message."""
+        self._now_s = now_s
+        asked: Message | None = None
+        try:
+            command = command_of(message)
+            asked = self.camera.answer(command, self._report())
+            is_accepted = asked is not None or command.number == mavlink.MAV_CMD_SET_CAMERA_MODE
+            result = ACCEPTED if is_accepted else self.pilot.operate(command) if command.number in CAMERA_COMMANDS else UNSUPPORTED
+        except NotFinite:
+            result = DENIED
+        except (ValueError, ArithmeticError):  # unexpected values
+            result = FAILED
+        self.pilot.refusal = ""  # a camera sends no status texts
+        answers = [acknowledgement(message.command, result, station), *([] if asked is None else [Outgoing(asked, station)])]
+        return [Outgoing(answer.message, answer.to, CAMERA) for answer in answers]
+
+    def _sender(self, message: int) -> int:
+        is_gimbal = message == mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS and self.autopilot_type is SimulatedAutopilot.PX4
+        return GIMBAL if is_gimbal else AUTOPILOT
 
     def _set_mode(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
         is_own = message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
@@ -200,6 +231,12 @@ class Endpoint:
         self._heartbeat_due_s, self._reported = now_s + HEARTBEAT_S, shows
         return [Outgoing(heartbeat(report))]
 
+    def _camera_heartbeat(self, now_s: float) -> list[Outgoing]:
+        if now_s < self._camera_heartbeat_due_s:
+            return []
+        self._camera_heartbeat_due_s = now_s + HEARTBEAT_S
+        return [Outgoing(self.camera.heartbeat(), None, CAMERA)]
+
     def _changed_heartbeat(self, now_s: float) -> list[Outgoing]:
         if self._reported == (self.pilot.custom_mode, self.vehicle.state.is_armed):
             return []
@@ -231,27 +268,6 @@ class Endpoint:
         self._heartbeat_due_s = -math.inf
         return [*self._text(f"Crashed: {event.reason}", mavlink.MAV_SEVERITY_EMERGENCY), *self._landed(event)]
 
-    def _photo(self, event: events.PhotoTaken) -> list[Message]:
-        state = self.vehicle.state
-        longitude_e7, latitude_e7 = position_e7(event.position)
-        altitude_mm, relative_mm = round(event.altitude_amsl_m * 1e3), round((event.altitude_amsl_m - state.home_amsl_m) * 1e3)
-        half_rad = math.radians(event.heading_deg) / 2
-        return [
-            mavlink.MAVLink_camera_image_captured_message(
-                int(event.at_s * 1e3),
-                int((self.unix_at_zero_s + self._now_s) * 1e6),
-                0,
-                latitude_e7,
-                longitude_e7,
-                altitude_mm,
-                relative_mm,
-                [math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)],
-                event.number,
-                1,
-                b"",
-            )
-        ]
-
 
 _HANDLERS: dict[str, Callable[[Endpoint, Any, Station, float], list[Outgoing]]] = {
     "COMMAND_LONG": Endpoint._command,
@@ -282,5 +298,4 @@ _REPORTED: dict[type, Callable[[Endpoint, Any], list[Message]]] = {
     events.TookOff: Endpoint._landed,
     events.LandedAt: Endpoint._landed,
     events.Crashed: Endpoint._crashed,
-    events.PhotoTaken: Endpoint._photo,
 }

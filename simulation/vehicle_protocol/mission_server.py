@@ -66,6 +66,11 @@ def as_kept(item: MissionItem, kind: MissionType, autopilot_type: SimulatedAutop
     if autopilot_type is SimulatedAutopilot.PX4:
         return item
     parameters = [0.0 if math.isnan(value) else value for value in item.parameters]
+    if kind is MissionType.MISSION and item.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:  # whole degrees, flags and device id
+        pitch, yaw, pitch_rate, yaw_rate = (float(math.trunc(value)) for value in parameters)
+        device = 0.0 if math.isnan(item.altitude_m) else float(math.trunc(item.altitude_m))
+        whole = (pitch, yaw, pitch_rate, yaw_rate)
+        return MissionItem(item.command, mavlink.MAV_FRAME_GLOBAL, whole, 0, item.latitude_e7, device)
     kept = KEPT_BY_ARDUPILOT.get(item.command)
     if kept is not None:
         parameters = [float(math.trunc(value)) if place < kept else 0.0 for place, value in enumerate(parameters)]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.flight.states import DONE, FlightMode, OrderRefused, Outcome
 from simulation.vehicle_protocol.command_endpoint import ReceivedCommand
 from simulation.vehicle_protocol.item_rules import begins_with_take_off
@@ -31,6 +32,15 @@ FORCE = 21_196  # of COMPONENT_ARM_DISARM
 MIN_TAKE_OFF_M = 1.0
 AIRSPEED, GROUND_SPEED = 0, 1
 PAUSE, GO_ON = 0, 1
+E7, MAX_INT = 1e7, 2**31 - 1
+GPS_POINT = mavlink.MAV_MOUNT_MODE_GPS_POINT
+PLACED = frozenset({mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_CMD_DO_SET_ROI})
+CAMERA_COMMANDS = frozenset(
+    {
+        mavlink.MAV_CMD_IMAGE_START_CAPTURE, mavlink.MAV_CMD_IMAGE_STOP_CAPTURE, mavlink.MAV_CMD_DO_DIGICAM_CONTROL,
+        mavlink.MAV_CMD_DO_SET_CAM_TRIGG_DIST,
+    }
+)  # fmt: skip
 
 
 @dataclass
@@ -180,6 +190,19 @@ class Pilot:
         number = command.whole(1)
         return DENIED if number is None or number < 0 else self.set_current(number)
 
+    def operate(self, command: ReceivedCommand) -> int:
+        """Carry out a command to gimbal, nose or camera. Without a frame a height is AMSL on PX4, above home on ArduPilot."""
+        if not command.is_frame_known:
+            return DENIED
+        one, two, three, four, five, six, seven = (math.nan if value is None else value for value in command.values)
+        is_placed = command.number in PLACED or (command.number == mavlink.MAV_CMD_DO_MOUNT_CONTROL and seven == GPS_POINT)
+        scale = E7 if is_placed else 1.0
+        x, y = (0 if math.isnan(value) else max(min(round(value * scale), MAX_INT), -MAX_INT) for value in (five, six))
+        is_amsl = self.autopilot_type is SimulatedAutopilot.PX4 if command.is_above_sea is None else command.is_above_sea
+        frame = mavlink.MAV_FRAME_GLOBAL if is_amsl else mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT
+        outcome = self.vehicle.operate(MissionItem(command.number, frame, (one, two, three, four), y, x, seven))
+        return self._result(outcome, DENIED)
+
     def _land(self, command: ReceivedCommand) -> int:
         return self.set_mode(FlightMode.LAND)
 
@@ -206,4 +229,12 @@ _ORDERS: dict[int, Callable[[Pilot, ReceivedCommand], int]] = {
     mavlink.MAV_CMD_DO_PAUSE_CONTINUE: Pilot._pause,
     mavlink.MAV_CMD_DO_CHANGE_SPEED: Pilot._change_speed,
     mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: Pilot._set_current,
-}
+    **dict.fromkeys(
+        (
+            mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_CMD_DO_SET_ROI, mavlink.MAV_CMD_DO_SET_ROI_NONE,
+            mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW, mavlink.MAV_CMD_DO_MOUNT_CONTROL, mavlink.MAV_CMD_CONDITION_YAW,
+            *CAMERA_COMMANDS,
+        ),
+        Pilot.operate,
+    ),
+}  # fmt: skip

@@ -14,6 +14,9 @@ E7 = 1e7
 UNKNOWN_U16 = 65_535
 UNKNOWN_I16 = 32_767
 UNTOLD_THROTTLE = 0
+UNKNOWN_RATE = math.nan
+FIRST_GIMBAL = 1  # gimbal_device_id of one that has no component of its own
+LEVEL_FLAGS = mavlink.GIMBAL_DEVICE_FLAGS_ROLL_LOCK | mavlink.GIMBAL_DEVICE_FLAGS_PITCH_LOCK
 UNTOLD_MAH = -1
 METRES_PER_DEGREE = 111_195.0  # of a sphere, for LOCAL_POSITION_NED
 J_PER_WH, HECTOJOULE = 3_600.0, 100.0
@@ -110,11 +113,28 @@ def attitude(report: SimulatedReport) -> Message:
     return mavlink.MAVLink_attitude_message(report.boot_ms, *angles, *_rates_rad(report.state))
 
 
+def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> list[float]:
+    """Return w, x, y, z of angles that are turned in the order yaw, pitch, roll."""
+    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(angle / 2), math.cos(angle / 2)) for angle in (roll_rad, pitch_rad, yaw_rad))
+    return [cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy]
+
+
 def attitude_quaternion(report: SimulatedReport) -> Message:
-    roll, pitch, yaw = (angle / 2 for angle in _attitude_rad(report.state))
-    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(half), math.cos(half)) for half in (roll, pitch, yaw))
-    q = (cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy)
-    return mavlink.MAVLink_attitude_quaternion_message(report.boot_ms, *q, *_rates_rad(report.state))
+    return mavlink.MAVLink_attitude_quaternion_message(report.boot_ms, *quaternion(*_attitude_rad(report.state)), *_rates_rad(report.state))
+
+
+def gimbal_attitude(report: SimulatedReport) -> Message:
+    """Return the gimbal's attitude: on PX4 that of a component with its yaw from north, on ArduPilot with its yaw from the nose."""
+    state, gimbal = report.state, report.state.gimbal
+    is_px4 = report.autopilot_type is SimulatedAutopilot.PX4
+    frame = mavlink.GIMBAL_DEVICE_FLAGS_YAW_IN_EARTH_FRAME if is_px4 else mavlink.GIMBAL_DEVICE_FLAGS_YAW_IN_VEHICLE_FRAME
+    locked = mavlink.GIMBAL_DEVICE_FLAGS_YAW_LOCK if gimbal.is_locked else 0
+    heading_rad = _attitude_rad(state)[2]
+    yaw_rad = math.radians(gimbal.yaw_deg) + (heading_rad if is_px4 else 0.0)
+    return mavlink.MAVLink_gimbal_device_attitude_status_message(
+        0, 0, report.boot_ms, LEVEL_FLAGS | frame | locked, quaternion(0.0, math.radians(gimbal.pitch_deg), yaw_rad),
+        UNKNOWN_RATE, UNKNOWN_RATE, UNKNOWN_RATE, 0, heading_rad if is_px4 else UNKNOWN_RATE, UNKNOWN_RATE, 0 if is_px4 else FIRST_GIMBAL,
+    )  # fmt: skip
 
 
 def local_position(report: SimulatedReport) -> Message:
@@ -201,6 +221,7 @@ REPORTS: dict[int, Callable[[SimulatedReport], Message]] = {
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: system_time,
     mavlink.MAVLINK_MSG_ID_HOME_POSITION: home,
     mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: origin,
+    mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS: gimbal_attitude,
     mavlink.MAVLINK_MSG_ID_WIND: wind,
     mavlink.MAVLINK_MSG_ID_WIND_COV: wind_estimate,
 }

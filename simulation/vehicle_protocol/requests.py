@@ -7,6 +7,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
+from simulation.vehicle_protocol.camera_endpoint import CameraEndpoint
 from simulation.vehicle_protocol.command_endpoint import ReceivedCommand
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.pilot import ACCEPTED, DENIED, UNSUPPORTED
@@ -84,6 +85,7 @@ class Requests:
     system: int
     streams: Streams
     report: Callable[[], SimulatedReport]
+    camera: CameraEndpoint
 
     def answer(self, command: ReceivedCommand) -> Answer | None:
         """Return the answer; None for a command that requests nothing."""
@@ -96,6 +98,9 @@ class Requests:
             return ACCEPTED, [version(self.autopilot_type, self.system)]
         if number == mavlink.MAVLINK_MSG_ID_MESSAGE_INTERVAL:
             return self._reported_interval(command.whole(2))
+        if number == mavlink.MAVLINK_MSG_ID_CAMERA_INFORMATION and self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
+            information = self.camera.answer(command, self.report())
+            return ACCEPTED, [] if information is None else [information]
         if number is None or number not in REPORTS:
             return UNSUPPORTED, []
         return ACCEPTED, [REPORTS[number](self.report())]

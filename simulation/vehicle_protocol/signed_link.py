@@ -18,11 +18,8 @@ class SignedLink:
     system: int
     key: bytes | None = field(default=None, repr=False)
     clock_offset_s: float = 0.0
-    _writer: FrameWriter = field(init=False, repr=False)
+    _writers: dict[int, FrameWriter] = field(default_factory=dict, repr=False)  # by component
     _checks: dict[int, SignatureCheck] = field(default_factory=dict, repr=False)
-
-    def __post_init__(self) -> None:
-        self._writer = FrameWriter(self.system, AUTOPILOT, key=self.key)
 
     def is_believed(self, frame: Frame, unix_s: float) -> bool:
         """Return whether a frame is accepted. unix_s: the true time."""
@@ -35,5 +32,6 @@ class SignedLink:
             refusal = check.refusal(frame, unix_s + self.clock_offset_s)
         return refusal is None
 
-    def frame_of(self, message: Message, unix_s: float) -> bytes:
-        return self._writer.frame_of(message, unix_s + self.clock_offset_s)
+    def frame_of(self, message: Message, unix_s: float, component: int = AUTOPILOT) -> bytes:
+        writer = self._writers.setdefault(component, FrameWriter(self.system, component, key=self.key))
+        return writer.frame_of(message, unix_s + self.clock_offset_s)

@@ -24,6 +24,7 @@ INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0,
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
     mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0,
+    mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS: 0.2,
 }
 WIND_INTERVAL_S = 2.0
 WIND = {SimulatedAutopilot.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, SimulatedAutopilot.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
@@ -82,7 +83,7 @@ class Streams:
         return round(self._intervals_s[message] * 1e6) if message in self._intervals_s else -1
 
 
-AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1, the only component
+AUTOPILOT, CAMERA, GIMBAL = int(mavlink.MAV_COMP_ID_AUTOPILOT1), int(mavlink.MAV_COMP_ID_CAMERA), int(mavlink.MAV_COMP_ID_GIMBAL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,12 +102,13 @@ class Station:
 
 @dataclass(frozen=True, slots=True)
 class Outgoing:
-    """A message to send. `to` is None for all stations."""
+    """A message to send. `to` is None for all stations; `component` sends it."""
 
     message: Message
     to: Station | None = None
+    component: int = AUTOPILOT
 
 
-def is_for(message: Any, system: int) -> bool:
+def is_for(message: Any, system: int, component: int = AUTOPILOT) -> bool:
     """Return whether a message is for this system id: 0 addresses all, and a message without a target is for all."""
-    return getattr(message, "target_system", 0) in (0, system) and getattr(message, "target_component", 0) in (0, AUTOPILOT)
+    return getattr(message, "target_system", 0) in (0, system) and getattr(message, "target_component", 0) in (0, component)

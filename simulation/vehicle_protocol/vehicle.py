@@ -5,6 +5,7 @@ from typing import Protocol
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
+from planning.views.camera import Camera
 from simulation.flight.airframe import Settings
 from simulation.flight.events import Event
 from simulation.flight.states import FlightMode, Outcome, RallyPoint, SimulatedState
@@ -16,6 +17,7 @@ class Vehicle(Protocol):
     settings: Settings
     items: tuple[MissionItem, ...]
     rally_points: tuple[RallyPoint, ...]
+    camera: Camera
 
     @property
     def state(self) -> SimulatedState: ...
@@ -37,3 +39,5 @@ class Vehicle(Protocol):
     def change_speed(self, speed_mps: float) -> Outcome: ...
 
     def set_current(self, index: int) -> Outcome: ...
+
+    def operate(self, item: MissionItem) -> Outcome: ...

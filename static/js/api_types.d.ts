@@ -1932,6 +1932,44 @@ export interface components {
             /** Format: double */
             length_m: number;
         };
+        /** @description A photo with the true pose of its lens. */
+        FlownPhoto: {
+            /**
+             * Format: double
+             * @description after the mission's departure
+             */
+            t_s: number;
+            /** @description longitude, latitude [deg] */
+            position: number[];
+            /** Format: double */
+            altitude_amsl_m: number;
+            /**
+             * Format: double
+             * @description above where this flight took off
+             */
+            altitude_relative_m: number;
+            /**
+             * Format: double
+             * @description from true north, clockwise
+             */
+            yaw_deg: number;
+            /**
+             * Format: double
+             * @description from the horizon; -90 is straight down
+             */
+            pitch_deg: number;
+            /**
+             * Format: double
+             * @description right side down
+             */
+            roll_deg: number;
+            /** @description that it belongs to */
+            waypoint: number | null;
+            /** @description that asked for it, in the flight's list from 0 */
+            item: number | null;
+            /** @description of the request, as the item numbers it */
+            sequence: number | null;
+        };
         FlownRoute: {
             /** @description in the air, with a position */
             reports: number;
@@ -7085,6 +7123,8 @@ export interface components {
             heading_deg?: number[];
             /** @description that was flown to */
             waypoint: (number | null)[];
+            /** @description at most 5,000; not in tracks of before */
+            photos?: components["schemas"]["FlownPhoto"][];
         };
         /**
          * @description * `battery` - battery
@@ -8619,6 +8659,7 @@ export type FlightLogPage = components['schemas']['FlightLogPage'];
 export type Flights = components['schemas']['Flights'];
 export type FlownGap = components['schemas']['FlownGap'];
 export type FlownLeg = components['schemas']['FlownLeg'];
+export type FlownPhoto = components['schemas']['FlownPhoto'];
 export type FlownRoute = components['schemas']['FlownRoute'];
 export type FlownStage = components['schemas']['FlownStage'];
 export type FlownTotals = components['schemas']['FlownTotals'];

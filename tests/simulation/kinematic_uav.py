@@ -8,7 +8,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
+from planning.views.camera import Camera
 from simulation.flight.airframe import Settings
+from simulation.flight.camera import SIMULATED_CAMERA
 from simulation.flight.events import Armed, Disarmed, Event, ItemReached, LandedAt, MissionEnded, ModeChanged, TookOff
 from simulation.flight.states import DONE, FlightMode, Gps, Landed, MissionItemState, OrderRefused, Outcome, RallyPoint, SimulatedState
 
@@ -36,6 +38,8 @@ class KinematicUav:
     state: SimulatedState = field(default_factory=resting)
     items: tuple[MissionItem, ...] = ()
     refuses_lists: bool = False
+    camera: Camera = SIMULATED_CAMERA
+    operated: list[MissionItem] = field(default_factory=list)
     rally_points: tuple[RallyPoint, ...] = ()
     settings: Settings = field(default_factory=Settings)
     _events: list[Event] = field(default_factory=list)
@@ -54,6 +58,10 @@ class KinematicUav:
     def take_events(self) -> list[Event]:
         events, self._events = self._events, []
         return events
+
+    def operate(self, item: MissionItem) -> Outcome:
+        self.operated.append(item)
+        return DONE
 
     def load(self, items: Sequence[MissionItem]) -> Outcome:
         if self.refuses_lists:

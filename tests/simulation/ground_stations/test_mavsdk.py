@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import pytest
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action, ActionError
+from mavsdk.plugins.camera import Camera, CaptureInfo, Information
 from mavsdk.plugins.info import Info
 from mavsdk.plugins.mission import Mission, MissionItem, MissionPlan
 from mavsdk.plugins.mission_raw import MissionItem as RawItem
@@ -18,6 +19,7 @@ from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
+from simulation.vehicle_protocol.streams import CAMERA
 from tests.simulation.fleets import AT, TIMEOUT_S, flying, free_port, wait_for
 
 SPEED = 20.0
@@ -40,6 +42,7 @@ class Station:
     raw: MissionRaw
     param: Param
     info: Info
+    camera: Camera
 
     def mode(self) -> str:
         return self.telemetry.flight_mode().name
@@ -59,7 +62,7 @@ def station(request) -> Iterator[Station]:
             mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
             system = mavsdk.first_autopilot(TIMEOUT_S)
             assert system is not None
-            plugins = (plugin(system) for plugin in (Action, Telemetry, Mission, MissionRaw, Param, Info))
+            plugins = (plugin(system) for plugin in (Action, Telemetry, Mission, MissionRaw, Param, Info, Camera))
             found = Station(fleet, request.param, *plugins)
             found.param.set_param_float(WAITS[request.param], 120.0)
             yield found
@@ -146,6 +149,32 @@ def test_parameters_are_read_and_set_and_a_missing_one_is_no_wait(station):
     assert station.param.get_param_float(name) == 25.0 * per_metre
     with pytest.raises(ParamError):
         station.param.get_param_float("NO_SUCH")
+
+
+def test_the_camera_is_found_and_its_photos_are_told(station):
+    """MAVSDK finds the component by its heartbeat, and asks it for what it is. On ArduPilot the autopilot speaks for the camera too."""
+
+    def component() -> list[Information]:
+        return [one for one in station.camera.camera_list().cameras if one.component_id == CAMERA]
+
+    (camera,) = wait_for(component, "the camera")
+    assert (camera.vendor_name, camera.model_name) == ("Simulated", "Simulated camera")
+    assert (camera.focal_length_mm, camera.horizontal_sensor_size_mm) == (pytest.approx(8.8), pytest.approx(13.2))
+    told: list[CaptureInfo] = []
+    handle = station.camera.subscribe_capture_info(lambda info, *_: told.append(info))
+    try:
+        station.camera.take_photo(camera.component_id)
+        wait_for(lambda: told, "the photo")
+        station.camera.start_photo_interval(camera.component_id, 1.0)
+        wait_for(lambda: len(told) >= 3, "photos a second apart")
+        station.camera.stop_photo_interval(camera.component_id)
+    finally:
+        station.camera.unsubscribe_capture_info(handle)
+    assert [photo.index for photo in told[:3]] == [0, 1, 2] and all(photo.is_success for photo in told)
+    position = told[0].position
+    assert (position.latitude_deg, position.longitude_deg) == pytest.approx((AT.lat, AT.lon), abs=1e-6)
+    assert position.absolute_altitude_m == pytest.approx(GROUND_M, abs=0.3)
+    assert told[0].attitude_euler_angle.pitch_deg == pytest.approx(0.0, abs=0.5)
 
 
 def test_armed_taken_off_flown_somewhere_and_landed(station):

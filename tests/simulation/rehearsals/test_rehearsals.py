@@ -11,11 +11,14 @@ from django.utils import timezone
 from inspection.selectors.planning import planning_read
 from inspection.services import build_graph
 from inspection.services.ground import mark_ground_changed
-from missions.models import Approval, Mission, MissionState, UavType
+from missions.models import Approval, Mission, MissionState, Uav, UavType
 from missions.selectors.missions import mission_of_organisation
-from missions.services import create_mission, plan_mission
+from missions.services import TargetRequest, create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.refused import Refused
+from planning.problem import Task, TaskKind
+from planning.views.camera import Gimbal, camera_to_json
+from simulation.flight.camera import SIMULATED_CAMERA
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe
 from simulation.rehearsing.flying import RouteToFly
 from simulation.serializers.words import reason_of
@@ -69,6 +72,25 @@ def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: 
     leaning = [max(map(abs, track.flights[0]["pitch_deg"])) for track in tracks]
     assert all(1.0 < most_deg < 60.0 for most_deg in leaning)  # it leans to move, and never falls over
     assert AuditEntry.objects.filter(action="rehearse", subject_id=str(mission.pk), actor=person).count() == 1
+
+
+def test_photos_are_kept_with_the_pose_of_the_lens_of_the_types_camera(here: World, person: User) -> None:
+    camera = replace(SIMULATED_CAMERA, name="Nadir", gimbal=Gimbal(-90.0, -60.0), offset_m=(0.0, 0.0, -0.3), min_interval_s=1.0)
+    kind = UavType.objects.create(organisation=person.organisation, name="Nadir", cameras=[camera_to_json(camera)])
+    (uav,) = fleet("Tern")
+    mission = planned(person, [uav], [TargetRequest(here.towers[0].pk, task=Task(TaskKind.PHOTO, 6.0))])
+    Uav.objects.filter(pk=uav.pk).update(uav_type=kind)
+    rehearsal = rehearsed(mission, person, "calm")
+    (flight,) = RehearsalTrack.objects.get(run__rehearsal=rehearsal).flights
+    target = next(waypoint for waypoint in plan_to_fly(loaded(mission)).routes[0].route.waypoints if waypoint.target is not None)
+    photos = flight["photos"]
+    assert len(photos) == 2
+    for photo in photos:
+        assert (photo["waypoint"], photo["pitch_deg"], photo["roll_deg"]) == (target.sequence, -60.0, 0.0)
+        assert photo["position"] == pytest.approx(list(target.position), abs=1e-5)
+        assert photo["altitude_relative_m"] == pytest.approx(target.altitude_relative_m - 0.3, abs=0.4)
+        assert flight["t_s"][0] < photo["t_s"] < flight["t_s"][-1]
+    assert rehearsal.uavs[0]["camera"]["name"] == "Nadir"
 
 
 def test_the_same_seed_gives_the_same_track(mission: Mission, person: User) -> None:

@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
-from simulation.vehicle_protocol.streams import Outgoing, Station
+from simulation.vehicle_protocol.streams import AUTOPILOT, Outgoing, Station
 from tests.simulation.kinematic_uav import STEP_S, KinematicUav
 
 SYSTEM = 7
@@ -23,12 +23,16 @@ def over_the_wire(message: Any, system: int, component: int) -> Any:
 
 @dataclass
 class Talk:
-    """`send` returns what comes back to everybody and to this station, `pass_by` what the vehicle says by itself meanwhile."""
+    """`send` returns what comes back to everybody and to this station, `pass_by` what the autopilot says by itself meanwhile.
+
+    `beside` keeps what the camera and the gimbal have said by themselves.
+    """
 
     autopilot_type: SimulatedAutopilot = SimulatedAutopilot.PX4
     uav: Any = field(default_factory=KinematicUav)
     now_s: float = 0.0
     station: Station = STATION
+    beside: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.endpoint = Endpoint(self.uav, autopilot_type=self.autopilot_type, system=SYSTEM, unix_at_zero_s=UNIX_S)
@@ -40,7 +44,7 @@ class Talk:
         for message in messages:
             answers += self.endpoint.receive(over_the_wire(message, who.system, who.component), who, self.now_s)
         assert all(answer.to in (None, who) for answer in answers)
-        return [over_the_wire(answer.message, SYSTEM, 1) for answer in answers]
+        return [over_the_wire(answer.message, SYSTEM, answer.component) for answer in answers]
 
     def pass_by(self, seconds: float, wall_s: float | None = None) -> list[Any]:
         """So many simulated seconds, in as many of the wall unless told otherwise."""
@@ -49,7 +53,9 @@ class Talk:
         for _ in range(steps):
             self.uav.step()
             self.now_s += (seconds if wall_s is None else wall_s) / steps
-            reported += [over_the_wire(one.message, SYSTEM, 1) for one in self.endpoint.tick(self.now_s)]
+            for one in self.endpoint.tick(self.now_s):
+                message = over_the_wire(one.message, SYSTEM, one.component)
+                (reported if one.component == AUTOPILOT else self.beside).append(message)
         return reported
 
     def command(self, number: int, *values: float) -> int:

@@ -14,7 +14,7 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
-from simulation.vehicle_protocol.streams import Station
+from simulation.vehicle_protocol.streams import CAMERA, Station
 from tests.simulation.kinematic_uav import HOME, KinematicUav
 
 SEEDS = [*range(6), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(6, 60))]
@@ -26,8 +26,11 @@ TALKED = (
     "PARAM_REQUEST_LIST", "FILE_TRANSFER_PROTOCOL", "TIMESYNC", "PING", "REQUEST_DATA_STREAM", "MISSION_WRITE_PARTIAL_LIST", "HEARTBEAT",
     "MANUAL_CONTROL", "SET_POSITION_TARGET_GLOBAL_INT", "GPS_RTCM_DATA", "SETUP_SIGNING",
 )  # fmt: skip
-COMMANDS = (400, 22, 21, 20, 300, 176, 192, 193, 178, 179, 189, 224, 410, 510, 511, 512, 519, 520, 16, 0, 65_535, 246, 209)
-ITEMS = (16, 17, 19, 20, 21, 22, 93, 177, 178, 195, 2000, 5001, 5002, 5003, 5100, 12_345)
+COMMANDS = (
+    400, 22, 21, 20, 300, 176, 192, 193, 178, 179, 189, 224, 410, 510, 511, 512, 519, 520, 16, 0, 65_535, 246, 209,
+    195, 197, 201, 205, 115, 1000, 2000, 2001, 203, 206, 521, 527, 530,
+)  # fmt: skip
+ITEMS = (16, 17, 19, 20, 21, 22, 93, 177, 178, 195, 201, 205, 115, 1000, 2000, 2001, 5001, 5002, 5003, 5100, 12_345)
 BY_NAME = {known.msgname: known for known in mavlink.mavlink_map.values()}
 
 
@@ -95,12 +98,15 @@ def test_nothing_that_comes_in_makes_it_fail_or_leaves_a_command_without_its_one
 
 def _check(message: Any, answers: list[Any], station: Station) -> None:
     is_ours = (
-        message.get_type() in ("COMMAND_LONG", "COMMAND_INT") and message.target_system in (0, 7) and message.target_component in (0, 1)
+        message.get_type() in ("COMMAND_LONG", "COMMAND_INT")
+        and message.target_system in (0, 7)
+        and message.target_component in (0, 1, CAMERA)
     )
     acks = [one for one in answers if one.message.get_type() == "COMMAND_ACK"]
     if is_ours:
         (ack,) = acks
         assert (ack.message.command, ack.to) == (message.command, station)
+        assert ack.component == (message.target_component or 1)
     elif message.get_type() != "SET_MODE":
         assert acks == []
 
