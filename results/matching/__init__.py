@@ -1,0 +1,1 @@
+"""Places photos at the targets of a mission."""
