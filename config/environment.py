@@ -44,6 +44,13 @@ def mail_settings(address: str) -> dict[str, Any]:
     return settings
 
 
+def media_storage(folder: Path) -> dict[str, Any]:
+    """Return Django's storage of photos and videos: SPANWISE_MEDIA_DIR, else this folder, readable by this user only."""
+    location = os.environ.get("SPANWISE_MEDIA_DIR") or str(folder)
+    options = {"location": location, "file_permissions_mode": 0o600, "directory_permissions_mode": 0o700}
+    return {"BACKEND": "django.core.files.storage.FileSystemStorage", "OPTIONS": options}
+
+
 def log_settings(environment: Mapping[str, str]) -> dict[str, Any]:
     """Return Django's LOGGING: everything to the console, in one of two formats."""
     form = "json" if environment.get("SPANWISE_LOG_FORMAT") == "json" else "line"

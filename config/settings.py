@@ -9,7 +9,7 @@ from typing import Any
 import dj_database_url
 
 from config import sign_in_settings
-from config.environment import entries, flag, languages, log_settings, mail_settings, mebibytes, number, secret
+from config.environment import entries, flag, languages, log_settings, mail_settings, mebibytes, media_storage, number, secret
 from config.openapi_settings import openapi_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from inspection.network.rules import FlownHeights, LinkingRules
@@ -20,6 +20,7 @@ from missions.command_rules import CommandLifetimes
 from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
 from planning.rules import FlightRules, RoutingRules, SeparationRules
 from planning.views.keep_out import ClearanceRules
+from results.media_metadata.photo_process import ReadingLimits
 
 BASE_DIR = Path(__file__).resolve().parent.parent
 STATE_DIR = state_directory()
@@ -93,6 +94,7 @@ INSTALLED_APPS = [
     "inspection",
     "missions",
     "telemetry",
+    "results",
     "simulation",
 ]
 
@@ -195,6 +197,7 @@ STATIC_URL = "/static/"
 STATIC_ROOT = Path(os.environ.get("SPANWISE_STATIC_DIR") or STATE_DIR / "static")
 STORAGES = {
     "default": {"BACKEND": "django.core.files.storage.FileSystemStorage"},
+    "media": media_storage(STATE_DIR / "media"),
     "staticfiles": {"BACKEND": "config.static_files.StaticFiles"},
 }
 STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".spanwise")]
@@ -210,6 +213,13 @@ MAX_UPLOAD_BYTES = {
 }
 
 UPLOADS_BYTES = mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # of one organisation: announced files that are stored
+
+# Photos and videos: bytes of all that an organisation has, of one file, and the limits of reading one.
+MEDIA_BYTES = mebibytes("SPANWISE_MEDIA_MIB", 200 * 1024)
+MAX_MEDIUM_BYTES = mebibytes("SPANWISE_MAX_MEDIUM_MIB", 4096)
+READING_LIMITS = ReadingLimits(
+    memory_bytes=mebibytes("SPANWISE_READING_MIB", 768), max_pixels=int(number("SPANWISE_MAX_MEGAPIXELS", 250) * 1_000_000)
+)
 
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [
@@ -230,6 +240,8 @@ REST_FRAMEWORK: dict[str, Any] = {
         "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
         "tiles": os.environ.get("SPANWISE_TILE_RATE", "3000/minute"),
         "scene": os.environ.get("SPANWISE_SCENE_RATE", "60/minute"),
+        "media-uploads": os.environ.get("SPANWISE_MEDIA_UPLOAD_RATE", "3000/minute"),
+        "media-files": os.environ.get("SPANWISE_MEDIA_FILE_RATE", "3000/minute"),
         "exports": os.environ.get("SPANWISE_EXPORT_RATE", "30/minute"),
     },
     "EXCEPTION_HANDLER": "workspace.api.errors.error_response",
@@ -295,6 +307,8 @@ CELERY_BEAT_SCHEDULE = {
         "schedule": 60.0,
         "options": {"expires": 60},
     },
+    "read media that wait": {"task": "results.tasks.read_media", "schedule": 3.0, "options": {"expires": 3}},
+    "forget old uploads of media": {"task": "results.tasks.forget_old_media_uploads", "schedule": 3_600.0},
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
     "forget old sign-ins": {"task": "accounts.tasks.forget_old_sign_ins", "schedule": 3_600.0},
     "forget ended sessions": {"task": "workspace.tasks.forget_ended_sessions", "schedule": 3_600.0},

@@ -15,6 +15,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("accounts.urls")),
     path("api/v1/", include("inspection.urls")),
     path("api/v1/", include("telemetry.urls")),
+    path("api/v1/", include("results.urls")),
     path("api/v1/", include("simulation.urls")),
     path("", include("accounts.page_urls")),
     path("", include("inspection.page_urls")),

@@ -1,6 +1,6 @@
-"""Back up one installation to a folder, and restore it: the database, the secret key, the flight logs.
+"""Back up one installation to a folder, and restore it: the database, the secret key, the flight logs, photos and videos.
 
-python -m scripts.backups backup [FOLDER] [--without-key]
+python -m scripts.backups backup [FOLDER] [--without-key] [--without-media]
 python -m scripts.backups restore FOLDER [--replace]
 
 The database is DATABASE_URL's, else the private one of the state folder (SPANWISE_VAR), which is started if it does not run.
@@ -34,7 +34,9 @@ from scripts.supervision.programs import database_server
 from scripts.supervision.supervision import Supervisor
 
 REFERENCE_SYSTEMS = "spatial_ref_sys"
-DUMP, MANIFEST, SUMS, KEY, LOGS = "database.dump", "manifest.json", "SHA256SUMS", "secret_key", "flight-logs"
+DUMP, MANIFEST, SUMS, KEY, LOGS, MEDIA = "database.dump", "manifest.json", "SHA256SUMS", "secret_key", "flight-logs", "media"
+ORIGINALS = "originals"  # of media: each is named by its SHA-256
+WORDS = {LOGS: "flights' logs", MEDIA: "photos and videos"}
 PIECE_BYTES = 1024 * 1024
 GONE_WITHIN_S = 5.0
 OWN_TABLES = """
@@ -111,7 +113,7 @@ def database(places: Places) -> Iterator[Database]:
             remove_sockets(places.state)
 
 
-def back_up(places: Places, folder: Path, *, with_key: bool = True) -> Path:
+def back_up(places: Places, folder: Path, *, with_key: bool = True, with_media: bool = True) -> Path:
     """Write everything to a new folder, readable by its owner only; it appears complete or not at all. Raises Refused."""
     if folder.exists():
         raise Refused(f"{folder} is there already")
@@ -128,11 +130,18 @@ def back_up(places: Places, folder: Path, *, with_key: bool = True) -> Path:
     if has_key:
         shutil.copy2(key, draft / KEY)
         (draft / KEY).chmod(0o600)
-    if (logs := flight_logs(places)).is_dir():  # after the database, so that all logs that it names are included
-        shutil.copytree(logs, draft / LOGS)
-    manifest = {"made_at": datetime.now(UTC).isoformat(), "version": VERSION, "has_key": has_key, "migrations": migrations}
+    for name, source_folder in file_folders(places).items():  # after the database, so that all files that it names are included
+        if source_folder.is_dir() and (with_media or name != MEDIA):
+            shutil.copytree(source_folder, draft / name, copy_function=_link if name == MEDIA else shutil.copy2)
+    manifest = {
+        "made_at": datetime.now(UTC).isoformat(),
+        "version": VERSION,
+        "has_key": has_key,
+        "has_media": with_media,
+        "migrations": migrations,
+    }
     (draft / MANIFEST).write_text(json.dumps(manifest, indent=2) + "\n")
-    (draft / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in _digests(draft)))
+    (draft / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in _digests(draft, trusts_names=True)))
     draft.rename(folder)
     return folder
 
@@ -146,9 +155,10 @@ def restore(places: Places, folder: Path, *, replaces: bool = False) -> None:
     brings_key = (folder / KEY).exists()
     if brings_key and key.exists() and key.read_bytes() != (folder / KEY).read_bytes() and not replaces:
         raise Refused(f"{key} is another key than the backup's; --replace puts the backup's in its place")
-    logs = flight_logs(places)
-    if logs.is_dir() and any(logs.iterdir()) and not replaces:
-        raise Refused(f"there are flights' logs in {logs}; --replace removes them")
+    folders = {name: there for name, there in file_folders(places).items() if name != MEDIA or (folder / MEDIA).is_dir()}
+    for name, there in folders.items():
+        if there.is_dir() and any(there.iterdir()) and not replaces:
+            raise Refused(f"there are {WORDS[name]} in {there}; --replace removes them")
     with database(places) as target:
         with target.connect() as connection:
             _refuse_if_used(connection)
@@ -166,9 +176,10 @@ def restore(places: Places, folder: Path, *, replaces: bool = False) -> None:
     if brings_key:
         shutil.copy2(folder / KEY, key)
         key.chmod(0o600)
-    shutil.rmtree(logs, ignore_errors=True)
-    if (folder / LOGS).is_dir():
-        shutil.copytree(folder / LOGS, logs)
+    for name, there in folders.items():
+        shutil.rmtree(there, ignore_errors=True)
+        if (folder / name).is_dir():
+            shutil.copytree(folder / name, there, copy_function=_link if name == MEDIA else shutil.copy2)
     shutil.rmtree(places.state / "graphs", ignore_errors=True)  # unpacked from the previous database
 
 
@@ -184,12 +195,30 @@ def verify(folder: Path) -> None:
         raise Refused(f"{folder} is damaged: {', '.join(wrong[:5])}")
 
 
-def flight_logs(places: Places) -> Path:
-    return Path(os.environ.get("SPANWISE_LOG_DIR") or places.state / "flight-logs")
+def file_folders(places: Places) -> dict[str, Path]:
+    """Return the folders of files, by their names in a backup."""
+    return {
+        LOGS: Path(os.environ.get("SPANWISE_LOG_DIR") or places.state / LOGS),
+        MEDIA: Path(os.environ.get("SPANWISE_MEDIA_DIR") or places.state / MEDIA),
+    }
 
 
-def _digests(folder: Path) -> Iterator[tuple[str, str]]:
+def _link(source: str, target: str) -> None:
+    """Link a file that never changes, so that it takes no room; copy it to another file system. One that was deleted meanwhile is left."""
+    try:
+        os.link(source, target)
+    except FileNotFoundError:
+        return
+    except OSError:
+        shutil.copy2(source, target)
+
+
+def _digests(folder: Path, *, trusts_names: bool = False) -> Iterator[tuple[str, str]]:
+    """Yield the files and their SHA-256. trusts_names: those of photos' and videos' originals are their names, which saves reading them."""
     for path in sorted(path for path in folder.rglob("*") if path.is_file() and path.name != SUMS):
+        if trusts_names and path.relative_to(folder).parts[0] == MEDIA and ORIGINALS in path.relative_to(folder).parts:
+            yield str(path.relative_to(folder)), path.name
+            continue
         digest = hashlib.sha256()
         with path.open("rb") as file:
             while piece := file.read(PIECE_BYTES):
@@ -236,14 +265,16 @@ def main(arguments: list[str]) -> int:
     backing = what.add_parser("backup", help="write a backup; Spanwise may run meanwhile")
     backing.add_argument("folder", type=Path, nargs="?", help="to be made; by default in the state folder under backups/")
     backing.add_argument("--without-key", action="store_true", help="leave the secret key out, where it is kept somewhere else")
+    backing.add_argument("--without-media", action="store_true", help="leave photos and videos out, where their folder is backed up itself")
     restoring = what.add_parser("restore", help="read a backup into an empty database; Spanwise must not run")
     restoring.add_argument("folder", type=Path)
-    restoring.add_argument("--replace", action="store_true", help="remove what is there: database, key, flights' logs")
+    restoring.add_argument("--replace", action="store_true", help="remove what is there: database, key, flights' logs, photos and videos")
     options = parser.parse_args(arguments)
     places = Places(state_directory())
     try:
         if options.what == "backup":
-            made = back_up(places, (options.folder or _default_folder(places)).resolve(), with_key=not options.without_key)
+            folder = (options.folder or _default_folder(places)).resolve()
+            made = back_up(places, folder, with_key=not options.without_key, with_media=not options.without_media)
             print(f"backup {made}")
         else:
             restore(places, options.folder.resolve(), replaces=options.replace)

@@ -18,7 +18,7 @@ from workspace.api import api_document
 
 ROOT = Path(__file__).resolve().parents[1]
 PURE_PACKAGES = {"planning", "mavlink"}
-APPS = ("workspace", "accounts", "inspection", *sorted(PURE_PACKAGES), "missions", "telemetry", "simulation")
+APPS = ("workspace", "accounts", "inspection", *sorted(PURE_PACKAGES), "missions", "telemetry", "results", "simulation")
 MAX_FILE_LINES = 450
 UNNAMED = {"utils", "util", "helpers", "helper", "common", "misc"}
 CLOCKS = {"datetime.now", "datetime.utcnow", "datetime.today", "date.today", "datetime.datetime.now", "datetime.date.today"}

@@ -15,7 +15,7 @@ from tests.migration_rule import faults
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]
 # Those of before the first version that was rolled out: the rule holds for all that come after.
-BEFORE_THE_RULE = {"inspection": 1, "missions": 1, "simulation": 1, "telemetry": 1, "workspace": 1}
+BEFORE_THE_RULE = {"inspection": 1, "missions": 1, "results": 0, "simulation": 1, "telemetry": 1, "workspace": 1}
 RELEASED = re.findall(r"^## \[?(\d+\.\d+\.\d+)", (PROJECT_DIR / "CHANGELOG.md").read_text(), flags=re.MULTILINE)
 
 

@@ -19,7 +19,7 @@ from simulation.serializers.words import reason_of
 from workspace.reason_texts import column_text, reason_text, reasons_of_column, text_and_column
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("workspace", "inspection", "planning", "mavlink", "missions", "telemetry", "simulation")
+PACKAGES = ("workspace", "inspection", "planning", "mavlink", "missions", "telemetry", "results", "simulation")
 ALIKE = {"text", "kind_VTOL", "order_start", "command_pause"}  # a code whose German is its English
 AWAY = Reason("stands_elsewhere", {"metres": 120, "allowed": 100})
 

@@ -29,7 +29,19 @@ LOCALE = ROOT / "locale"
 TEMPLATES = ROOT / "templates"
 SCRIPTS = ROOT / "static" / "js"
 COMPILED_SCRIPTS = SCRIPTS / "locale"
-APPS = ("operation", "config", "workspace", "accounts", "inspection", "planning", "mavlink", "missions", "telemetry", "simulation")
+APPS = (
+    "operation",
+    "config",
+    "workspace",
+    "accounts",
+    "inspection",
+    "planning",
+    "mavlink",
+    "missions",
+    "telemetry",
+    "results",
+    "simulation",
+)
 
 Text = str | tuple[str, str]  # the second form has a plural; in scripts "|hint" names the meaning of a word, the context in a .po file
 

@@ -908,6 +908,14 @@ export interface components {
         CameraCatalogue: {
             results: components["schemas"]["CatalogueCamera"][];
         };
+        /**
+         * @description * `amsl` - amsl
+         *     * `ellipsoid` - ellipsoid
+         *     * `take_off` - take_off
+         *     * `unknown` - unknown
+         * @enum {string}
+         */
+        CameraHeightReference: "amsl" | "ellipsoid" | "take_off" | "unknown";
         /** @description A camera body with one lens, on a gimbal. */
         CameraRequest: {
             name: string;
@@ -951,6 +959,18 @@ export interface components {
             /** @description of the lens from the antenna: forward, right, up; poses are the lens's, and the clearance is as much more */
             offset_m?: number[];
             is_thermal?: boolean;
+        };
+        Candidate: {
+            target: number;
+            asset: number | null;
+            label: string;
+            /**
+             * Format: double
+             * @description from the camera
+             */
+            distance_m: number;
+            /** @description taken while it was visited; null: one of the times is not known */
+            is_in_visit: boolean | null;
         };
         /** @description A camera body with one lens, on a gimbal. */
         CatalogueCamera: {
@@ -2383,6 +2403,13 @@ export interface components {
              */
             saves_m: number;
         };
+        Height: {
+            /** Format: double */
+            value_m: number;
+            reference: components["schemas"]["CameraHeightReference"];
+            /** @description the tag that states it */
+            source: string;
+        };
         /**
          * @description * `AGL` - above ground
          *     * `AMSL` - above sea level
@@ -2608,6 +2635,12 @@ export interface components {
          * @enum {string}
          */
         JobState: "queued" | "running" | "done" | "failed" | "cancelled";
+        KnownMedium: {
+            sha256: string;
+            /** Format: uuid */
+            id: string;
+            file_name: string;
+        };
         LandingHere: {
             /** Format: date-time */
             at: string;
@@ -3167,6 +3200,149 @@ export interface components {
             /** Format: date-time */
             waypoint: string | null;
         };
+        MediaLookup: {
+            /** @description what your organisation has already: it need not be sent */
+            known: components["schemas"]["KnownMedium"][];
+        };
+        MediaLookupInputRequest: {
+            sha256: string[];
+        };
+        MediaUpload: {
+            /**
+             * Format: uuid
+             * @description null: the file is known and need not be sent
+             */
+            id: string | null;
+            file_name: string;
+            size_bytes: number;
+            received_bytes: number;
+            /** @description that one request takes at most */
+            part_bytes: number;
+            /** @description your organisation had this file before */
+            is_known: boolean;
+            /**
+             * Format: uuid
+             * @description what the complete upload has become
+             */
+            medium: string | null;
+        };
+        MediaUploadInputRequest: {
+            /** Format: uuid */
+            mission?: string | null;
+            uav?: number | null;
+            /** @description what it shows, if known */
+            target?: number | null;
+            /** @description what it shows, if known */
+            asset?: number | null;
+            file_name: string;
+            /** Format: int64 */
+            size_bytes: number;
+            /** @description checked when the last byte has arrived */
+            sha256?: string;
+        };
+        MediaUse: {
+            used_bytes: number;
+            max_bytes: number;
+        };
+        Medium: {
+            /** Format: uuid */
+            id: string;
+            sha256: string;
+            kind: components["schemas"]["MediumKind"];
+            /** @description by its content */
+            media_type: string;
+            file_name: string;
+            size_bytes: number;
+            state: components["schemas"]["MediumState"];
+            /** @description why it is not shown, in your language */
+            fault: string;
+            fault_code: string;
+            /** @description of the upright picture; marks are in these pixels */
+            width_px: number | null;
+            height_px: number | null;
+            /** Format: date-time */
+            taken_at: string | null;
+            taken_at_source: components["schemas"]["TakenAtSource"] | components["schemas"]["BlankEnum"];
+            /** @description of the camera */
+            position: components["schemas"]["Point"] | null;
+            /** @description of the camera, each with what it is above */
+            heights: components["schemas"]["Height"][];
+            /**
+             * Format: double
+             * @description of the optical axis, clockwise from true north
+             */
+            camera_yaw_deg: number | null;
+            /**
+             * Format: double
+             * @description of the optical axis above the horizon, -90 straight down
+             */
+            camera_pitch_deg: number | null;
+            /**
+             * Format: double
+             * @description around the optical axis, clockwise
+             */
+            camera_roll_deg: number | null;
+            attitude_source: string;
+            camera_model: string;
+            /** Format: double */
+            focal_length_mm: number | null;
+            /** Format: uuid */
+            mission: string | null;
+            uav: number | null;
+            target: number | null;
+            target_label: string;
+            asset: number | null;
+            asset_label: string;
+            /**
+             * @description how it is known what it shows
+             *
+             *     * `waiting` - Waiting to be read
+             *     * `stated` - Stated with the upload
+             *     * `captured` - By the UAV's report of the capture
+             *     * `nearest` - Nearest target by position and time
+             *     * `manual` - By a user
+             *     * `unplaced` - Not known
+             */
+            placement: components["schemas"]["Placement"];
+            /** @description at most two targets that come into question */
+            candidates: components["schemas"]["Candidate"][];
+            /**
+             * @description empty: nobody has looked at it
+             *
+             *     * `nothing` - Nothing to see
+             *     * `findings` - Has findings
+             */
+            review: components["schemas"]["Review"] | components["schemas"]["BlankEnum"];
+            /** Format: date-time */
+            reviewed_at: string | null;
+            /** Format: date-time */
+            received_at: string;
+            /** @description path of the file as it was sent */
+            original: string;
+            /** @description paths of smaller WebP pictures, by their longest edge in pixels */
+            previews: {
+                [key: string]: string;
+            };
+        };
+        /**
+         * @description * `photo` - Photo
+         *     * `thermal` - Thermal photo
+         *     * `video` - Video
+         * @enum {string}
+         */
+        MediumKind: "photo" | "thermal" | "video";
+        MediumPage: {
+            results: components["schemas"]["Medium"][];
+            /** @description path and query of the next page */
+            next: string | null;
+        };
+        /**
+         * @description * `waiting` - Waiting to be read
+         *     * `ready` - Ready
+         *     * `not_shown` - Stored, but cannot be shown
+         * @enum {string}
+         */
+        MediumState: "waiting" | "ready" | "not_shown";
         MetLeg: {
             /** @description index of the UAV */
             uav: number;
@@ -3941,6 +4117,14 @@ export interface components {
             position?: number[];
             note?: string;
         };
+        /** @description target and asset place it by hand, both null unplaces it; review states that you have looked at it. */
+        PatchedMediumChangeRequest: {
+            /** Format: uuid */
+            mission?: string | null;
+            target?: number | null;
+            asset?: number | null;
+            review?: components["schemas"]["Review"] | components["schemas"]["BlankEnum"];
+        };
         /** @description Data that other systems may store with a mission. */
         PatchedMissionPatchRequest: {
             uavs?: components["schemas"]["UavInputRequest"][];
@@ -4229,6 +4413,16 @@ export interface components {
         };
         /** @enum {string} */
         PlaceEnum: "this-machine" | "private-network" | "internet";
+        /**
+         * @description * `waiting` - Waiting to be read
+         *     * `stated` - Stated with the upload
+         *     * `captured` - By the UAV's report of the capture
+         *     * `nearest` - Nearest target by position and time
+         *     * `manual` - By a user
+         *     * `unplaced` - Not known
+         * @enum {string}
+         */
+        Placement: "waiting" | "stated" | "captured" | "nearest" | "manual" | "unplaced";
         /** @description Quality of a plan: a bound that no plan can be better than, and this plan's gap above it. */
         Plan: {
             /**
@@ -5943,6 +6137,12 @@ export interface components {
             /** @description the state before this entry comes back */
             entry: number;
         };
+        /**
+         * @description * `nothing` - Nothing to see
+         *     * `findings` - Has findings
+         * @enum {string}
+         */
+        Review: "nothing" | "findings";
         /** @description Interval of a UAV's reports, and the ages at which the newest counts as late and as silent. */
         Rhythm: {
             /**
@@ -6878,6 +7078,14 @@ export interface components {
              */
             altitude_amsl_m: number | null;
         };
+        /**
+         * @description * `gps` - UTC of the receiver
+         *     * `camera` - Camera's clock with its offset
+         *     * `local` - Camera's clock, in the organisation's time zone
+         *     * `user` - A user
+         * @enum {string}
+         */
+        TakenAtSource: "gps" | "camera" | "local" | "user";
         TargetExplanation: {
             target: number;
             reason: components["schemas"]["TargetExplanationReasonEnum"];
@@ -8578,7 +8786,9 @@ export type BulkUndoRequest = components['schemas']['BulkUndoRequest'];
 export type BulkValuesRequest = components['schemas']['BulkValuesRequest'];
 export type Camera = components['schemas']['Camera'];
 export type CameraCatalogue = components['schemas']['CameraCatalogue'];
+export type CameraHeightReference = components['schemas']['CameraHeightReference'];
 export type CameraRequest = components['schemas']['CameraRequest'];
+export type Candidate = components['schemas']['Candidate'];
 export type CatalogueCamera = components['schemas']['CatalogueCamera'];
 export type CatalogueSource = components['schemas']['CatalogueSource'];
 export type ChangeCollection = components['schemas']['ChangeCollection'];
@@ -8690,6 +8900,7 @@ export type HandRouteFlown = components['schemas']['HandRouteFlown'];
 export type HandRouteRequest = components['schemas']['HandRouteRequest'];
 export type HandSpeed = components['schemas']['HandSpeed'];
 export type Heaviest = components['schemas']['Heaviest'];
+export type Height = components['schemas']['Height'];
 export type HeightReference = components['schemas']['HeightReference'];
 export type HeightSource = components['schemas']['HeightSource'];
 export type Heights = components['schemas']['Heights'];
@@ -8711,6 +8922,7 @@ export type JobError = components['schemas']['JobError'];
 export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
+export type KnownMedium = components['schemas']['KnownMedium'];
 export type LandingHere = components['schemas']['LandingHere'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];
@@ -8752,6 +8964,15 @@ export type MapViewRequest = components['schemas']['MapViewRequest'];
 export type MatchEnum = components['schemas']['MatchEnum'];
 export type Measured = components['schemas']['Measured'];
 export type MeasuredAt = components['schemas']['MeasuredAt'];
+export type MediaLookup = components['schemas']['MediaLookup'];
+export type MediaLookupInputRequest = components['schemas']['MediaLookupInputRequest'];
+export type MediaUpload = components['schemas']['MediaUpload'];
+export type MediaUploadInputRequest = components['schemas']['MediaUploadInputRequest'];
+export type MediaUse = components['schemas']['MediaUse'];
+export type Medium = components['schemas']['Medium'];
+export type MediumKind = components['schemas']['MediumKind'];
+export type MediumPage = components['schemas']['MediumPage'];
+export type MediumState = components['schemas']['MediumState'];
 export type MetLeg = components['schemas']['MetLeg'];
 export type MetOnReturn = components['schemas']['MetOnReturn'];
 export type MissingEnum = components['schemas']['MissingEnum'];
@@ -8809,6 +9030,7 @@ export type PasswordChangeRequest = components['schemas']['PasswordChangeRequest
 export type PatchedAccountChangeRequest = components['schemas']['PatchedAccountChangeRequest'];
 export type PatchedAssetInputRequest = components['schemas']['PatchedAssetInputRequest'];
 export type PatchedBaseRequest = components['schemas']['PatchedBaseRequest'];
+export type PatchedMediumChangeRequest = components['schemas']['PatchedMediumChangeRequest'];
 export type PatchedMissionPatchRequest = components['schemas']['PatchedMissionPatchRequest'];
 export type PatchedOrganisationRequest = components['schemas']['PatchedOrganisationRequest'];
 export type PatchedParametersRequest = components['schemas']['PatchedParametersRequest'];
@@ -8826,6 +9048,7 @@ export type PatchedVehicleChangeRequest = components['schemas']['PatchedVehicleC
 export type PatchedZoneInputRequest = components['schemas']['PatchedZoneInputRequest'];
 export type PickedAsset = components['schemas']['PickedAsset'];
 export type PlaceEnum = components['schemas']['PlaceEnum'];
+export type Placement = components['schemas']['Placement'];
 export type Plan = components['schemas']['Plan'];
 export type PlanInputRequest = components['schemas']['PlanInputRequest'];
 export type PlanLock = components['schemas']['PlanLock'];
@@ -8933,6 +9156,7 @@ export type ReturnChecks = components['schemas']['ReturnChecks'];
 export type ReturnState = components['schemas']['ReturnState'];
 export type ReturnWayRequest = components['schemas']['ReturnWayRequest'];
 export type RevertRequest = components['schemas']['RevertRequest'];
+export type Review = components['schemas']['Review'];
 export type Rhythm = components['schemas']['Rhythm'];
 export type Role = components['schemas']['Role'];
 export type RollBackRequest = components['schemas']['RollBackRequest'];
@@ -8997,6 +9221,7 @@ export type Support = components['schemas']['Support'];
 export type SupportKindEnum = components['schemas']['SupportKindEnum'];
 export type SupportsOutput = components['schemas']['SupportsOutput'];
 export type TakeOff = components['schemas']['TakeOff'];
+export type TakenAtSource = components['schemas']['TakenAtSource'];
 export type TargetExplanation = components['schemas']['TargetExplanation'];
 export type TargetExplanationReasonEnum = components['schemas']['TargetExplanationReasonEnum'];
 export type TargetInputRequest = components['schemas']['TargetInputRequest'];

@@ -17,6 +17,8 @@ from scripts.backups import OWN_TABLES, SUMS, Refused, back_up, database_at, mai
 from scripts.places import PROJECT_DIR, Places
 
 SERVER = (os.environ.get("DATABASE_URL") or private_database_url(state_directory())).partition("?")[0].rpartition("/")[0]
+PHOTO_CONTENT = b"\xff\xd8\xff of a tower"
+PHOTO = f"media/1/originals/ab/{hashlib.sha256(PHOTO_CONTENT).hexdigest()}"  # named by its hash
 DEMO = """
 CREATE TABLE django_migrations (app text, name text);
 INSERT INTO django_migrations VALUES ('missions', '0001_initial'), ('missions', '0002_more'), ('inspection', '0001_initial');
@@ -46,6 +48,7 @@ def one(databases: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     """An installation with rows, a key and a flight's log; its database is the one of the environment."""
     monkeypatch.setenv("DATABASE_URL", databases[0])
     monkeypatch.delenv("SPANWISE_LOG_DIR", raising=False)
+    monkeypatch.delenv("SPANWISE_MEDIA_DIR", raising=False)
     with database_at(databases[0]).connect() as connection:
         connection.execute(DEMO)
     return _state(tmp_path / "one", key="the key of one", log=b"\xfd\x09 a flight")
@@ -58,6 +61,8 @@ def _state(folder: Path, *, key: str = "", log: bytes = b"") -> Places:
     if log:
         (folder / "flight-logs" / "7").mkdir(parents=True)
         (folder / "flight-logs" / "7" / "first.tlog").write_bytes(log)
+        (folder / PHOTO).parent.mkdir(parents=True)
+        (folder / PHOTO).write_bytes(PHOTO_CONTENT)
     return Places(folder)
 
 
@@ -86,6 +91,7 @@ def test_all_is_back_after_a_backup_and_a_restore(
     assert (other.state / "secret_key").read_text() == "the key of one"
     assert (other.state / "secret_key").stat().st_mode & 0o777 == 0o600
     assert (other.state / "flight-logs" / "7" / "first.tlog").read_bytes() == b"\xfd\x09 a flight"
+    assert (other.state / PHOTO).read_bytes() == PHOTO_CONTENT
     assert not (other.state / "graphs").exists()
     with database_at(databases[1]).connect() as connection:  # the next row gets the next number
         assert connection.execute("INSERT INTO tower DEFAULT VALUES RETURNING id").fetchone() == (501,)
@@ -109,6 +115,21 @@ def test_what_is_there_stays_unless_it_is_to_be_replaced(one: Places, databases:
     assert sorted(hashes(databases[0])) == ["public.django_migrations", "public.tower"]
     assert hashes(databases[0])["public.tower"].endswith(" 500")
     assert (one.state / "secret_key").read_text() == "the key of one"
+
+
+@pytest.mark.long
+def test_photos_are_left_out_where_they_are_backed_up_otherwise_and_then_stay_as_they_are(one: Places, tmp_path: Path) -> None:
+    made = back_up(one, tmp_path / "backup", with_media=False)
+    assert not (made / "media").exists()
+    restore(one, made, replaces=True)
+    assert (one.state / PHOTO).read_bytes() == PHOTO_CONTENT
+
+
+@pytest.mark.long
+def test_a_photo_that_was_changed_in_a_backup_is_found(one: Places, tmp_path: Path) -> None:
+    (one.state / PHOTO).write_bytes(b"another photo")
+    with pytest.raises(Refused, match="damaged"):
+        verify(back_up(one, tmp_path / "backup"))
 
 
 @pytest.mark.long

@@ -30,6 +30,7 @@ from missions.models import (
     UavCredential,
     UavType,
 )
+from results.models import MediaUpload, Medium
 from simulation.models import Rehearsal
 from simulation.vehicle_models import SimulatedVehicle, Simulation
 from telemetry.models import Alert, AlertLevel, FlightLog
@@ -47,8 +48,8 @@ SHARED = {
     "asset_id", "issue_id", "entry_id", "proposal_id", "import_id", "upload_id", "set_id", "subscription_id", "zone_id", "region_id",
     "vehicle_id of unknown-vehicles",
 }  # fmt: skip
-PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte", "ending"}
-APPS = ("mfa", "workspace", "missions", "telemetry", "simulation")
+PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte", "ending", "edge"}
+APPS = ("mfa", "workspace", "missions", "telemetry", "results", "simulation")
 REFUSED = {403, 404, 409}  # 409: it was not deleted, so that nothing is brought back
 OWN_DOINGS = {"workspace.signinentry", "workspace.idempotencykey", "workspace.browsersession"}  # of the stranger
 
@@ -83,6 +84,8 @@ def rows_of(home: Organisation) -> dict[str, Model]:
         "vehicle_id of simulated-vehicles": SimulatedVehicle.objects.create(
             simulation=simulation, sequence=0, uav=uav, name="Tern", system_id=7, airframe="iris", position=at, conditions={}
         ),
+        "medium_id": Medium.objects.create(organisation=home, sha256=f"{home.pk:064}", kind="photo", media_type="image/jpeg", size_bytes=1),
+        "media_upload_id": MediaUpload.objects.create(organisation=home, file_name="tern.jpg", size_bytes=1),
         "user_id": keeper,
         "account_id": make_service_account(actor=keeper, name="erp", role=Role.OPERATOR),
         "invitation_id": Invitation.objects.create(organisation=home, role=Role.VIEWER, token_sha256=f"{home.pk:064}", expires_at=soon),
@@ -168,6 +171,6 @@ def test_the_same_rows_are_there_for_their_own() -> None:
     for name, address in {
         "mission_id": "missions/{}", "uav_id": "uavs/{}", "base_id": "bases/{}", "type_id": "uav-types/{}", "command_id": "commands/{}",
         "selection_id": "selections/{}", "alert_id": "alerts/{}", "offer_id": "replan-offers/{}", "job_id": "jobs/{}",
-        "simulation_id": "simulations/{}", "user_id": "users/{}",
+        "simulation_id": "simulations/{}", "user_id": "users/{}", "medium_id": "media/{}", "media_upload_id": "media-uploads/{}",
     }.items():  # fmt: skip
         assert client.get(f"/api/v1/{address.format(rows[name].pk)}").status_code == 200, name

@@ -20,7 +20,19 @@ from django.views.decorators.http import require_safe
 from drf_spectacular.generators import SchemaGenerator
 from drf_spectacular.renderers import OpenApiJsonRenderer, OpenApiYamlRenderer
 
-APPS = ("accounts", "config", "inspection", "mavlink", "missions", "operation", "planning", "simulation", "telemetry", "workspace")
+APPS = (
+    "accounts",
+    "config",
+    "inspection",
+    "mavlink",
+    "missions",
+    "operation",
+    "planning",
+    "results",
+    "simulation",
+    "telemetry",
+    "workspace",
+)
 FORMS = {"yaml": OpenApiYamlRenderer, "json": OpenApiJsonRenderer}
 FORM_OF = {
     "application/vnd.oai.openapi": "yaml",

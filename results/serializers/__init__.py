@@ -1,0 +1,1 @@
+"""Shapes of media and findings in the API."""

@@ -1,0 +1,1 @@
+"""What writes media and findings."""

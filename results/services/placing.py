@@ -1,0 +1,100 @@
+"""Decides what media show: what was stated with the upload, else the target next to position and time, else nothing."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from django.contrib.gis.geos import LineString, Point
+
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.models import Asset
+from missions.models import InspectionTarget, Mission
+from results.matching.nearest import PhotoPlace, Placing, TargetPlace, place_photo
+from results.models import Medium, Placement, TakenAtSource
+from workspace.audit import record_change
+from workspace.models import User
+
+CERTAIN_TIMES = {TakenAtSource.GPS, TakenAtSource.CAMERA, TakenAtSource.USER}  # in a stated zone
+
+
+def place_medium(medium: Medium) -> None:
+    """Set target and asset of a medium that nobody has placed; the caller saves it. What is not clear stays unplaced."""
+    if medium.placement in (Placement.STATED, Placement.MANUAL):
+        if medium.target_id is None and medium.mission_id is not None and medium.asset_id is not None:
+            medium.target = _only_target(medium.mission_id, medium.asset_id)
+        return
+    medium.placement, medium.candidates = Placement.UNPLACED, []
+    if medium.mission_id is None or medium.position is None:
+        return
+    targets = {row.pk: row for row in InspectionTarget.objects.filter(mission=medium.mission_id).select_related("asset")}
+    placing = _placing(medium, list(targets.values()))
+    medium.candidates = [_candidate_json(one.key, one.distance_m, one.is_in_visit, targets[one.key]) for one in placing.candidates]
+    if placing.chosen is not None:
+        medium.target, medium.placement = targets[placing.chosen], Placement.NEAREST
+        medium.asset = targets[placing.chosen].asset
+
+
+def assign_medium(*, medium: Medium, actor: User, mission: Mission | None, target: InspectionTarget | None, asset: Asset | None) -> None:
+    """Place a medium by hand; without target and asset it is unplaced."""
+    before = placement_facts(medium)
+    medium.mission, medium.target = mission, target
+    medium.asset = asset if asset is not None else target.asset if target is not None else None
+    medium.placement = Placement.UNPLACED if target is None and asset is None else Placement.MANUAL
+    medium.save(update_fields=["mission", "target", "asset", "placement", "updated_at"])
+    record_change(
+        organisation=medium.organisation, actor=actor, action="assign", subject_type="medium", subject_id=medium.pk,
+        before=before, after=placement_facts(medium),
+    )  # fmt: skip
+
+
+def placement_facts(medium: Medium) -> dict[str, Any]:
+    return {
+        "mission": None if medium.mission_id is None else str(medium.mission_id),
+        "target": medium.target_id,
+        "asset": medium.asset_id,
+        "placement": medium.placement,
+    }
+
+
+def _only_target(mission_id: Any, asset_id: int) -> InspectionTarget | None:
+    found = list(InspectionTarget.objects.filter(mission=mission_id, asset=asset_id)[:2])
+    return found[0] if len(found) == 1 else None
+
+
+def _placing(medium: Medium, targets: Sequence[InspectionTarget]) -> Placing:
+    assert medium.position is not None  # noqa: S101
+    frame = LocalFrame.around(medium.position.x, medium.position.y)
+    places = [TargetPlace(target.pk, outline, _visit_s(target)) for target in targets if (outline := _outline(target, frame)) is not None]
+    is_certain = medium.taken_at is not None and medium.taken_at_source in CERTAIN_TIMES
+    taken_s = medium.taken_at.timestamp() if is_certain and medium.taken_at is not None else None
+    return place_photo(PhotoPlace(0.0, 0.0, taken_s), places)
+
+
+def _visit_s(target: InspectionTarget) -> tuple[float, float] | None:
+    if target.reached_at is None:
+        return None
+    begin_s = target.reached_at.timestamp()
+    return begin_s, begin_s + (target.held_s or 0.0)
+
+
+def _outline(target: InspectionTarget, frame: LocalFrame) -> tuple[tuple[float, float], ...] | None:
+    """Return a target's points in metres: a stretch, a position, else its asset's line or centre."""
+    place: LineString | Point | None = target.stretch or target.position
+    if place is None and target.asset is not None:
+        geometry = target.asset.geometry
+        place = geometry if isinstance(geometry, LineString) else target.asset.centre
+    if place is None:
+        return None
+    points = [place.coords] if isinstance(place, Point) else place.coords
+    metres = frame.to_metres(np.array([point[:2] for point in points], dtype=np.float64))
+    return tuple((float(east_m), float(north_m)) for east_m, north_m in metres)
+
+
+def _candidate_json(key: int, distance_m: float, is_in_visit: bool | None, target: InspectionTarget) -> dict[str, Any]:
+    return {
+        "target": key,
+        "asset": target.asset_id,
+        "label": target.label,
+        "distance_m": round(distance_m, 1),
+        "is_in_visit": is_in_visit,
+    }

@@ -1,0 +1,1 @@
+"""Endpoints of media and findings."""
