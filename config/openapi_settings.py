@@ -3,6 +3,7 @@
 import os
 from typing import Any
 
+from results.categories import BY_CODE
 from workspace.api.headers import HEADERS
 
 
@@ -50,6 +51,11 @@ def openapi_settings() -> dict[str, Any]:
             "SimulationState": "simulation.models.SimulationState",
             "SimulatedAutopilotType": "simulation.models.SimulatedAutopilotType",
             "AlertLevel": "telemetry.models.AlertLevel",
+            "FindingState": ["open", "work_ordered", "done", "verified", "rejected"],
+            "FindingCategory": list(BY_CODE),
+            "ObservationOutcome": "results.models.Outcome",
+            "SeveritySource": "results.models.SeveritySource",
+            "MarkType": ["box", "polygon"],
             "MediumKind": "results.models.MediumKind",
             "MediumState": "results.models.MediumState",
             "Placement": "results.models.Placement",

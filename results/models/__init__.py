@@ -1,5 +1,20 @@
 """Models of media and findings."""
 
+from results.models.findings import Evidence, Finding, FindingComment, Observation, Outcome, SeveritySource
 from results.models.media import MediaUpload, Medium, MediumKind, MediumState, Placement, Review, TakenAtSource
 
-__all__ = ["MediaUpload", "Medium", "MediumKind", "MediumState", "Placement", "Review", "TakenAtSource"]
+__all__ = [
+    "Evidence",
+    "Finding",
+    "FindingComment",
+    "MediaUpload",
+    "Medium",
+    "MediumKind",
+    "MediumState",
+    "Observation",
+    "Outcome",
+    "Placement",
+    "Review",
+    "SeveritySource",
+    "TakenAtSource",
+]

@@ -17,11 +17,12 @@ from results.media_metadata.media_types import MEDIA_TYPES, name_with_suffix
 from results.models import Medium, MediumKind, MediumState, Placement, Review
 from results.selectors.media import NOT_REVIEWED, MediaFilter, media_of_organisation, media_that_match
 from results.serializers import media as shapes
-from results.services.media import delete_medium, review_medium
+from results.services.media import IsEvidence, delete_medium, review_medium
 from results.services.placing import assign_medium
 from results.services.store import MediumMissing, derivative_name, open_stored, original_name
 from results.services.uploads import known_media, media_use
 from results.views.subjects import asset_or_404, subject_of
+from workspace.api.errors import ApiProblem
 from workspace.api.paging import asked_choice, page_of
 from workspace.api.permissions import EVERYBODY
 from workspace.api.renderers import OneAnswer
@@ -119,7 +120,10 @@ class MediumDetail(APIView):
         responses={204: None, 409: OpenApiResponse(description="`is_evidence`: a finding refers to it.")},
     )
     def delete(self, request: SignedInRequest, medium_id: UUID) -> Response:
-        delete_medium(medium=medium_or_404(request, medium_id), actor=request.user)
+        try:
+            delete_medium(medium=medium_or_404(request, medium_id), actor=request.user)
+        except IsEvidence as error:
+            raise ApiProblem(409, "is_evidence", _("A finding refers to this photo: it cannot be deleted.")) from error
         return Response(status=204)
 
 

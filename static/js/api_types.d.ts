@@ -1031,6 +1031,17 @@ export interface components {
             date: string;
             figures: string[];
         };
+        Category: {
+            code: string;
+            component: string;
+            component_name: string;
+            name: string;
+            needs_note: boolean;
+        };
+        CategoryList: {
+            scheme: string;
+            categories: components["schemas"]["Category"][];
+        };
         ChangeCollection: {
             type: components["schemas"]["FeatureCollectionType"];
             features: components["schemas"]["ChangeFeature"][];
@@ -1284,6 +1295,9 @@ export interface components {
             name: string;
             /** @description no real aircraft */
             is_simulated: boolean;
+        };
+        CommentInputRequest: {
+            text: string;
         };
         ComponentCoverage: {
             component: components["schemas"]["ComponentEnum"];
@@ -1772,6 +1786,15 @@ export interface components {
             id: number;
             name: string;
         };
+        Evidence: {
+            id: number;
+            /** Format: uuid */
+            medium: string;
+            shape: components["schemas"]["Shape"] | null;
+            author: string | null;
+            /** Format: date-time */
+            created_at: string;
+        };
         Example: {
             program: string;
             /** @description or what to enter */
@@ -1879,6 +1902,92 @@ export interface components {
              */
             short_percent: number | null;
         };
+        /**
+         * @description * `tower-corrosion` - tower-corrosion
+         *     * `tower-member-bent` - tower-member-bent
+         *     * `tower-member-missing` - tower-member-missing
+         *     * `tower-bolt` - tower-bolt
+         *     * `tower-leaning` - tower-leaning
+         *     * `tower-nest` - tower-nest
+         *     * `tower-plate` - tower-plate
+         *     * `foundation-paint` - foundation-paint
+         *     * `foundation-cracked` - foundation-cracked
+         *     * `foundation-settlement` - foundation-settlement
+         *     * `foundation-erosion` - foundation-erosion
+         *     * `pole-condition` - pole-condition
+         *     * `pole-leaning` - pole-leaning
+         *     * `pole-animal` - pole-animal
+         *     * `pole-rot` - pole-rot
+         *     * `insulator-broken` - insulator-broken
+         *     * `insulator-flashover` - insulator-flashover
+         *     * `insulator-chipped` - insulator-chipped
+         *     * `insulator-tracking` - insulator-tracking
+         *     * `insulator-corroded` - insulator-corroded
+         *     * `insulator-displaced` - insulator-displaced
+         *     * `insulator-ring` - insulator-ring
+         *     * `fitting-corrosion` - fitting-corrosion
+         *     * `fitting-pin` - fitting-pin
+         *     * `fitting-damper` - fitting-damper
+         *     * `fitting-spacer` - fitting-spacer
+         *     * `fitting-hot` - fitting-hot
+         *     * `conductor-strands` - conductor-strands
+         *     * `conductor-bulging` - conductor-bulging
+         *     * `conductor-corrosion` - conductor-corrosion
+         *     * `conductor-object` - conductor-object
+         *     * `conductor-sag` - conductor-sag
+         *     * `vegetation-inside` - vegetation-inside
+         *     * `vegetation-fall-in` - vegetation-fall-in
+         *     * `vegetation-growth` - vegetation-growth
+         *     * `vegetation-building` - vegetation-building
+         *     * `vegetation-fire` - vegetation-fire
+         *     * `bridge-crack` - bridge-crack
+         *     * `bridge-alligator` - bridge-alligator
+         *     * `bridge-spalling` - bridge-spalling
+         *     * `bridge-rebar` - bridge-rebar
+         *     * `bridge-rust` - bridge-rust
+         *     * `bridge-efflorescence` - bridge-efflorescence
+         *     * `bridge-wet` - bridge-wet
+         *     * `bridge-cavity` - bridge-cavity
+         *     * `bridge-bearing` - bridge-bearing
+         *     * `bridge-drainage` - bridge-drainage
+         *     * `track-code` - track-code
+         *     * `no-access` - no-access
+         *     * `not-assessable` - not-assessable
+         *     * `other` - other
+         * @enum {string}
+         */
+        FindingCategory: "tower-corrosion" | "tower-member-bent" | "tower-member-missing" | "tower-bolt" | "tower-leaning" | "tower-nest" | "tower-plate" | "foundation-paint" | "foundation-cracked" | "foundation-settlement" | "foundation-erosion" | "pole-condition" | "pole-leaning" | "pole-animal" | "pole-rot" | "insulator-broken" | "insulator-flashover" | "insulator-chipped" | "insulator-tracking" | "insulator-corroded" | "insulator-displaced" | "insulator-ring" | "fitting-corrosion" | "fitting-pin" | "fitting-damper" | "fitting-spacer" | "fitting-hot" | "conductor-strands" | "conductor-bulging" | "conductor-corrosion" | "conductor-object" | "conductor-sag" | "vegetation-inside" | "vegetation-fall-in" | "vegetation-growth" | "vegetation-building" | "vegetation-fire" | "bridge-crack" | "bridge-alligator" | "bridge-spalling" | "bridge-rebar" | "bridge-rust" | "bridge-efflorescence" | "bridge-wet" | "bridge-cavity" | "bridge-bearing" | "bridge-drainage" | "track-code" | "no-access" | "not-assessable" | "other";
+        FindingComment: {
+            id: number;
+            text: string;
+            author: string | null;
+            /** Format: date-time */
+            created_at: string;
+        };
+        /** @description What is not stated is taken from the first medium: asset, target, mission. */
+        FindingInputRequest: {
+            category: components["schemas"]["FindingCategory"];
+            /** @description 1 danger, 2 repair, 3 watch, 4 note */
+            severity: number;
+            note?: string;
+            evidence?: components["schemas"]["MarkRequest"][];
+            /** Format: uuid */
+            mission?: string | null;
+            target?: number | null;
+            asset?: number | null;
+            /** Format: date */
+            due_on?: string | null;
+            work_reference?: string;
+        };
+        /**
+         * @description * `open` - open
+         *     * `work_ordered` - work_ordered
+         *     * `done` - done
+         *     * `verified` - verified
+         *     * `rejected` - rejected
+         * @enum {string}
+         */
+        FindingState: "open" | "work_ordered" | "done" | "verified" | "rejected";
         FlightEnergy: {
             flight: number;
             /** Format: double */
@@ -2537,6 +2646,88 @@ export interface components {
          * @enum {string}
          */
         IncidentKindEnum: "crashed" | "down" | "failsafe-return" | "failsafe-land" | "told-return" | "told-land" | "aborted" | "battery" | "link-lost" | "alert";
+        InspectionFinding: {
+            /** Format: uuid */
+            id: string;
+            /** @description within your organisation */
+            number: number;
+            category: string;
+            /** @description in your language */
+            category_name: string;
+            /** @description the list of categories that it was made with */
+            scheme: string;
+            severity: number;
+            severity_source: components["schemas"]["SeveritySource"];
+            note: string;
+            state: components["schemas"]["FindingState"];
+            asset: number | null;
+            asset_label: string;
+            /** Format: uuid */
+            mission: string | null;
+            target: number | null;
+            position: components["schemas"]["Point"] | null;
+            /** Format: date */
+            due_on: string | null;
+            /** Format: date-time */
+            done_at: string | null;
+            work_reference: string;
+            /** Format: date-time */
+            first_seen_at: string;
+            /** Format: date-time */
+            last_seen_at: string;
+            evidence: components["schemas"]["Evidence"][];
+            created_by: string | null;
+            /** Format: date-time */
+            created_at: string;
+            /** Format: date-time */
+            updated_at: string;
+            revision: number;
+        };
+        InspectionFindingDetail: {
+            /** Format: uuid */
+            id: string;
+            /** @description within your organisation */
+            number: number;
+            category: string;
+            /** @description in your language */
+            category_name: string;
+            /** @description the list of categories that it was made with */
+            scheme: string;
+            severity: number;
+            severity_source: components["schemas"]["SeveritySource"];
+            note: string;
+            state: components["schemas"]["FindingState"];
+            asset: number | null;
+            asset_label: string;
+            /** Format: uuid */
+            mission: string | null;
+            target: number | null;
+            position: components["schemas"]["Point"] | null;
+            /** Format: date */
+            due_on: string | null;
+            /** Format: date-time */
+            done_at: string | null;
+            work_reference: string;
+            /** Format: date-time */
+            first_seen_at: string;
+            /** Format: date-time */
+            last_seen_at: string;
+            evidence: components["schemas"]["Evidence"][];
+            created_by: string | null;
+            /** Format: date-time */
+            created_at: string;
+            /** Format: date-time */
+            updated_at: string;
+            revision: number;
+            /** @description later visits that looked for it */
+            observations: components["schemas"]["Observation"][];
+            comments: components["schemas"]["FindingComment"][];
+        };
+        InspectionFindingPage: {
+            results: components["schemas"]["InspectionFinding"][];
+            /** @description path and query of the next page */
+            next: string | null;
+        };
         /** @description An invitation, without the link itself. */
         Invitation: {
             readonly id: number;
@@ -3104,6 +3295,18 @@ export interface components {
             /** Format: double */
             latitude: number;
         };
+        MarkRequest: {
+            /** Format: uuid */
+            medium: string;
+            /** @description null: the whole picture */
+            shape?: components["schemas"]["ShapeRequest"] | null;
+        };
+        /**
+         * @description * `box` - box
+         *     * `polygon` - polygon
+         * @enum {string}
+         */
+        MarkType: "box" | "polygon";
         /**
          * @description * `found` - found
          *     * `several` - several
@@ -3978,6 +4181,28 @@ export interface components {
          * @enum {string}
          */
         ObjectiveEnum: "total" | "makespan" | "time" | "energy";
+        Observation: {
+            /** Format: uuid */
+            medium: string;
+            outcome: components["schemas"]["ObservationOutcome"];
+            /** Format: date-time */
+            observed_at: string;
+            author: string | null;
+        };
+        ObservationInputRequest: {
+            /**
+             * Format: uuid
+             * @description a later photo of the asset
+             */
+            medium: string;
+            outcome: components["schemas"]["ObservationOutcome"];
+        };
+        /**
+         * @description * `seen` - Seen again
+         *     * `not_seen` - Looked, and not seen
+         * @enum {string}
+         */
+        ObservationOutcome: "seen" | "not_seen";
         Offer: {
             /** @description what /repair takes */
             action: string;
@@ -4116,6 +4341,16 @@ export interface components {
              */
             position?: number[];
             note?: string;
+        };
+        PatchedFindingChangeRequest: {
+            category?: components["schemas"]["FindingCategory"];
+            severity?: number;
+            note?: string;
+            state?: components["schemas"]["FindingState"];
+            asset?: number | null;
+            /** Format: date */
+            due_on?: string | null;
+            work_reference?: string;
         };
         /** @description target and asset place it by hand, both null unplaces it; review states that you have looked at it. */
         PatchedMediumChangeRequest: {
@@ -6646,6 +6881,39 @@ export interface components {
             ends_at: string;
             ends_in_s: number;
         };
+        /**
+         * @description * `user` - User
+         *     * `rule` - Rule
+         *     * `import` - Import
+         * @enum {string}
+         */
+        SeveritySource: "user" | "rule" | "import";
+        /** @description A mark in pixels of the upright original, from its top left corner: x, y, width and height of a box, or points of a polygon. */
+        Shape: {
+            type: components["schemas"]["MarkType"];
+            /** Format: double */
+            x?: number;
+            /** Format: double */
+            y?: number;
+            /** Format: double */
+            width?: number;
+            /** Format: double */
+            height?: number;
+            points?: number[][];
+        };
+        /** @description A mark in pixels of the upright original, from its top left corner: x, y, width and height of a box, or points of a polygon. */
+        ShapeRequest: {
+            type: components["schemas"]["MarkType"];
+            /** Format: double */
+            x?: number;
+            /** Format: double */
+            y?: number;
+            /** Format: double */
+            width?: number;
+            /** Format: double */
+            height?: number;
+            points?: number[][];
+        };
         /** @description A login attempt or a logout. `username` is null where the typed name is unknown. */
         SignIn: {
             readonly id: number;
@@ -8791,6 +9059,8 @@ export type CameraRequest = components['schemas']['CameraRequest'];
 export type Candidate = components['schemas']['Candidate'];
 export type CatalogueCamera = components['schemas']['CatalogueCamera'];
 export type CatalogueSource = components['schemas']['CatalogueSource'];
+export type Category = components['schemas']['Category'];
+export type CategoryList = components['schemas']['CategoryList'];
 export type ChangeCollection = components['schemas']['ChangeCollection'];
 export type ChangeFeature = components['schemas']['ChangeFeature'];
 export type ChangeProperties = components['schemas']['ChangeProperties'];
@@ -8809,6 +9079,7 @@ export type CommandParametersRequest = components['schemas']['CommandParametersR
 export type CommandPriority = components['schemas']['CommandPriority'];
 export type CommandState = components['schemas']['CommandState'];
 export type CommandUav = components['schemas']['CommandUav'];
+export type CommentInputRequest = components['schemas']['CommentInputRequest'];
 export type ComponentCoverage = components['schemas']['ComponentCoverage'];
 export type ComponentEnum = components['schemas']['ComponentEnum'];
 export type ConditionsOutput = components['schemas']['ConditionsOutput'];
@@ -8853,6 +9124,7 @@ export type EstimateProperties = components['schemas']['EstimateProperties'];
 export type EstimateShape = components['schemas']['EstimateShape'];
 export type Estimates = components['schemas']['Estimates'];
 export type EventUav = components['schemas']['EventUav'];
+export type Evidence = components['schemas']['Evidence'];
 export type Example = components['schemas']['Example'];
 export type ExplainedRoute = components['schemas']['ExplainedRoute'];
 export type FailedReturn = components['schemas']['FailedReturn'];
@@ -8863,6 +9135,10 @@ export type FeatureType = components['schemas']['FeatureType'];
 export type FetchJob = components['schemas']['FetchJob'];
 export type FigureChange = components['schemas']['FigureChange'];
 export type Finding = components['schemas']['Finding'];
+export type FindingCategory = components['schemas']['FindingCategory'];
+export type FindingComment = components['schemas']['FindingComment'];
+export type FindingInputRequest = components['schemas']['FindingInputRequest'];
+export type FindingState = components['schemas']['FindingState'];
 export type FlightEnergy = components['schemas']['FlightEnergy'];
 export type FlightLog = components['schemas']['FlightLog'];
 export type FlightLogPage = components['schemas']['FlightLogPage'];
@@ -8914,6 +9190,9 @@ export type ImportInputRequest = components['schemas']['ImportInputRequest'];
 export type ImportKind = components['schemas']['ImportKind'];
 export type Incident = components['schemas']['Incident'];
 export type IncidentKindEnum = components['schemas']['IncidentKindEnum'];
+export type InspectionFinding = components['schemas']['InspectionFinding'];
+export type InspectionFindingDetail = components['schemas']['InspectionFindingDetail'];
+export type InspectionFindingPage = components['schemas']['InspectionFindingPage'];
 export type Invitation = components['schemas']['Invitation'];
 export type InvitationInputRequest = components['schemas']['InvitationInputRequest'];
 export type InvitationPage = components['schemas']['InvitationPage'];
@@ -8961,6 +9240,8 @@ export type LostLinkCheck = components['schemas']['LostLinkCheck'];
 export type LostLinkOutput = components['schemas']['LostLinkOutput'];
 export type LostLinkRequest = components['schemas']['LostLinkRequest'];
 export type MapViewRequest = components['schemas']['MapViewRequest'];
+export type MarkRequest = components['schemas']['MarkRequest'];
+export type MarkType = components['schemas']['MarkType'];
 export type MatchEnum = components['schemas']['MatchEnum'];
 export type Measured = components['schemas']['Measured'];
 export type MeasuredAt = components['schemas']['MeasuredAt'];
@@ -9014,6 +9295,9 @@ export type Noted = components['schemas']['Noted'];
 export type NotedList = components['schemas']['NotedList'];
 export type NullEnum = components['schemas']['NullEnum'];
 export type ObjectiveEnum = components['schemas']['ObjectiveEnum'];
+export type Observation = components['schemas']['Observation'];
+export type ObservationInputRequest = components['schemas']['ObservationInputRequest'];
+export type ObservationOutcome = components['schemas']['ObservationOutcome'];
 export type Offer = components['schemas']['Offer'];
 export type OfferState = components['schemas']['OfferState'];
 export type OpenTargetReasonRequest = components['schemas']['OpenTargetReasonRequest'];
@@ -9030,6 +9314,7 @@ export type PasswordChangeRequest = components['schemas']['PasswordChangeRequest
 export type PatchedAccountChangeRequest = components['schemas']['PatchedAccountChangeRequest'];
 export type PatchedAssetInputRequest = components['schemas']['PatchedAssetInputRequest'];
 export type PatchedBaseRequest = components['schemas']['PatchedBaseRequest'];
+export type PatchedFindingChangeRequest = components['schemas']['PatchedFindingChangeRequest'];
 export type PatchedMediumChangeRequest = components['schemas']['PatchedMediumChangeRequest'];
 export type PatchedMissionPatchRequest = components['schemas']['PatchedMissionPatchRequest'];
 export type PatchedOrganisationRequest = components['schemas']['PatchedOrganisationRequest'];
@@ -9191,6 +9476,9 @@ export type ServiceAccount = components['schemas']['ServiceAccount'];
 export type ServiceAccountInputRequest = components['schemas']['ServiceAccountInputRequest'];
 export type ServiceAccountPage = components['schemas']['ServiceAccountPage'];
 export type SessionTimes = components['schemas']['SessionTimes'];
+export type SeveritySource = components['schemas']['SeveritySource'];
+export type Shape = components['schemas']['Shape'];
+export type ShapeRequest = components['schemas']['ShapeRequest'];
 export type SignIn = components['schemas']['SignIn'];
 export type SignInOutcome = components['schemas']['SignInOutcome'];
 export type SignInPage = components['schemas']['SignInPage'];

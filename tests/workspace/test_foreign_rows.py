@@ -30,7 +30,8 @@ from missions.models import (
     UavCredential,
     UavType,
 )
-from results.models import MediaUpload, Medium
+from results.models import Evidence, Finding, MediaUpload, Medium
+from results.services.findings import create_finding
 from simulation.models import Rehearsal
 from simulation.vehicle_models import SimulatedVehicle, Simulation
 from telemetry.models import Alert, AlertLevel, FlightLog
@@ -85,6 +86,11 @@ def rows_of(home: Organisation) -> dict[str, Model]:
             simulation=simulation, sequence=0, uav=uav, name="Tern", system_id=7, airframe="iris", position=at, conditions={}
         ),
         "medium_id": Medium.objects.create(organisation=home, sha256=f"{home.pk:064}", kind="photo", media_type="image/jpeg", size_bytes=1),
+        "finding_id": a_finding(keeper),
+        "evidence_id": Evidence.objects.create(
+            finding=a_finding(keeper),
+            medium=Medium.objects.create(organisation=home, sha256=f"{home.pk:063}1", kind="photo", media_type="image/jpeg", size_bytes=1),
+        ),
         "media_upload_id": MediaUpload.objects.create(organisation=home, file_name="tern.jpg", size_bytes=1),
         "user_id": keeper,
         "account_id": make_service_account(actor=keeper, name="erp", role=Role.OPERATOR),
@@ -97,6 +103,10 @@ def rows_of(home: Organisation) -> dict[str, Model]:
         ),
         "token_id": ApiToken.objects.create(user=keeper, token_sha256=f"{home.pk:064}", expires_at=soon),
     }
+
+
+def a_finding(user: User) -> Finding:
+    return create_finding(actor=user, category="tower-corrosion", severity=2)
 
 
 def session_of(user: User) -> Session:
@@ -171,6 +181,7 @@ def test_the_same_rows_are_there_for_their_own() -> None:
     for name, address in {
         "mission_id": "missions/{}", "uav_id": "uavs/{}", "base_id": "bases/{}", "type_id": "uav-types/{}", "command_id": "commands/{}",
         "selection_id": "selections/{}", "alert_id": "alerts/{}", "offer_id": "replan-offers/{}", "job_id": "jobs/{}",
-        "simulation_id": "simulations/{}", "user_id": "users/{}", "medium_id": "media/{}", "media_upload_id": "media-uploads/{}",
+        "simulation_id": "simulations/{}", "user_id": "users/{}", "medium_id": "media/{}",
+        "finding_id": "findings/{}", "media_upload_id": "media-uploads/{}",
     }.items():  # fmt: skip
         assert client.get(f"/api/v1/{address.format(rows[name].pk)}").status_code == 200, name
