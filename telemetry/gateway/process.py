@@ -146,7 +146,7 @@ class Gateway:
     def _new_session(self, uav: KnownUav) -> Session:
         self.unknown.forget(uav.system)
         session = self.sessions[uav.system] = Session(
-            uav, self.store.records, link_id=_link_id(self.options.name), lost_here=self.lost_here
+            uav, self.store.records, captures=self.store.captures, link_id=_link_id(self.options.name), lost_here=self.lost_here
         )
         return session
 

@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, AutopilotType
 from mavlink.decoding.boots import Stamp, VehicleTime
+from mavlink.decoding.captures import CaptureDecoder
 from mavlink.decoding.measurement import LinkQuality
 from mavlink.decoding.report import FlownState, MeasurementDecoder, StatusText, TextCollector, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
@@ -29,6 +30,7 @@ from telemetry.gateway.message_requests import MessageRequests
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.sender_authentication import SENDER_SILENT_S, SenderAuthentication, is_within
+from telemetry.services.captures import NewCapture
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links.links import Lease, LinkState
 from telemetry.services.links.onboard_lists import Doubt
@@ -44,6 +46,7 @@ LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 SEND_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
+NO_BOOT = "boot-unknown"  # a photo before the vehicle has told its time
 ADDRESS_GOOD_S = 3_600.0  # longer than any flight: after this silence an address may belong to another host
 Listener = Callable[[Message, float], None]
 
@@ -122,7 +125,7 @@ def _is_to_us(message: Message) -> bool:
 class Session:
     """The session, which serves the vehicle once it has a lease.
 
-    `records`, `texts` and `flown` are to be stored, and removed by the code that stores them.
+    `records`, `captures`, `texts` and `flown` are to be stored, and removed by the code that stores them.
     """
 
     uav: KnownUav
@@ -134,6 +137,7 @@ class Session:
     lost_here: Counter[str] = field(default_factory=Counter)  # of all sessions of this gateway
     texts: list[StatusText] = field(default_factory=list)
     flown: list[FlownMissionItem] = field(default_factory=list)
+    captures: deque[NewCapture] = field(default_factory=deque)
     authentication: SenderAuthentication = field(init=False)
     state: VehicleState = field(init=False)
     time: VehicleTime = field(default_factory=VehicleTime)
@@ -149,6 +153,7 @@ class Session:
     _reporter: MeasurementDecoder = field(default_factory=MeasurementDecoder)
     _collector: TextCollector = field(default_factory=TextCollector)
     _quality: LinkQuality = field(default_factory=LinkQuality)
+    _photos: CaptureDecoder = field(default_factory=CaptureDecoder)
     _flight: FlightWatch = field(default_factory=FlightWatch)
     _position_s: float = 0.0
     _greeted: dict[str, float] = field(default_factory=dict)  # time of the last heartbeat to each address
@@ -184,6 +189,8 @@ class Session:
             self.texts += self._collector.receive(message, now_s)
         if message is not None and frame.component == AUTOPILOT:
             self._take(message, now_s)
+        if message is not None:
+            self._note_photo(message, now_s)
 
     def _count_loss(self, cause: str) -> None:
         self.losses[cause] += 1
@@ -348,6 +355,21 @@ class Session:
             self._record(message, stamp, now_s)
         for listener in list(self.listeners):
             listener(message, monotonic_s)
+
+    def _note_photo(self, message: Message, now_s: float) -> None:
+        """Queue what a message of any component of the vehicle, such as its camera, tells of a photo."""
+        report = self._photos.receive(message, self.time, self.state.autopilot_type, now_s)
+        if report is not None:
+            self.captures.append(
+                NewCapture(
+                    uav_id=self.uav.uav_id,
+                    link=LinkKind.MAVLINK,
+                    stream=self.time.boots[-1].key if self.time.boots else NO_BOOT,
+                    received_at=datetime.fromtimestamp(now_s, UTC),
+                    report=report,
+                    mission_item=self.state.mission_item,
+                )
+            )
 
     def forget_flown(self) -> None:
         """Reset the progress after an upload: items reached before belong to another list."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
+from telemetry.services.captures import NewCapture
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links.gateway_messages import ReceivedBatch, ReceivedText, store_received
 from telemetry.services.links.links import LinkState
@@ -15,6 +16,8 @@ logger = logging.getLogger(__name__)
 
 RECORDS_AT_ONCE = 2_000
 MAX_TEXTS = 10_000
+MAX_CAPTURES = 20_000
+CAPTURES_AT_ONCE = 200
 
 
 @dataclass
@@ -29,6 +32,7 @@ class Store:
     records: deque[NewRecord] = field(default_factory=deque)
     texts: deque[ReceivedText] = field(default_factory=lambda: deque(maxlen=MAX_TEXTS))
     sightings: dict[int, Sighting] = field(default_factory=dict)
+    captures: deque[NewCapture] = field(default_factory=lambda: deque(maxlen=MAX_CAPTURES))
     stored: int = 0
     duplicates: int = 0
     lost: int = 0  # for lack of room, or because they could not be stored
@@ -44,7 +48,8 @@ class Store:
         records = [self.records.popleft() for _ in range(min(len(self.records), RECORDS_AT_ONCE))]
         texts, self.texts = self.texts, deque(maxlen=MAX_TEXTS)
         sightings, self.sightings = self.sightings, {}
-        received = ReceivedBatch(records, self.links(), list(texts), list(sightings.values()))
+        captures = [self.captures.popleft() for _ in range(min(len(self.captures), CAPTURES_AT_ONCE))]
+        received = ReceivedBatch(records, self.links(), list(texts), list(sightings.values()), captures)
         if not received:
             return False
         is_stored = False
@@ -58,10 +63,11 @@ class Store:
             if not is_stored:  # also when the loop is cancelled; storing twice is harmless
                 self.records.extendleft(reversed(records))
                 self.texts.extendleft(reversed(texts))
+                self.captures.extendleft(reversed(captures))
                 self.sightings = sightings | self.sightings
                 self.unsaved(received.links)
         self._notify(is_away=False)
-        return bool(self.records)
+        return bool(self.records or self.captures)
 
     async def _store(self, received: ReceivedBatch) -> None:
         try:
@@ -119,13 +125,13 @@ def _most_of_each(numbers: Iterable[int], most: int) -> int:
 
 
 def _parts(received: ReceivedBatch) -> Sequence[ReceivedBatch]:
-    """Return halves of the records; without records, links, texts and sightings one by one."""
-    if len(received.records) > 1 or (received.records and (received.links or received.texts or received.sightings)):
+    """Return halves of the records; without records, links, texts, sightings and photos one by one."""
+    if len(received.records) > 1 or (received.records and received != ReceivedBatch(received.records)):
         middle = max(len(received.records) // 2, 1)
         halves = [ReceivedBatch(records) for records in (received.records[:middle], received.records[middle:]) if records]
         rest = replace(received, records=())
         return [*halves, rest] if rest else halves
     if received.records:
         return [received]
-    kinds = ("links", "texts", "sightings")
+    kinds = ("links", "texts", "sightings", "captures")
     return [ReceivedBatch(**{kind: [entry]}) for kind in kinds for entry in getattr(received, kind)]

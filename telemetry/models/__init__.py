@@ -1,6 +1,7 @@
 """Models of links, records, estimates, flights and alerts."""
 
 from telemetry.models.alerts import Alert, AlertLevel, AlertNote
+from telemetry.models.captures import Capture, CaptureReport
 from telemetry.models.flights import FlightEvent, FlightEventKind
 from telemetry.models.links import FlightLog, UavLink, UnknownVehicle, UnknownVehicleState, VehicleText
 from telemetry.models.records import InspectionResult, TelemetryRecord, TelemetryStream
@@ -10,6 +11,8 @@ __all__ = [
     "Alert",
     "AlertLevel",
     "AlertNote",
+    "Capture",
+    "CaptureReport",
     "FlightEvent",
     "FlightEventKind",
     "FlightLog",

@@ -63,7 +63,7 @@ class _Row:
 @transaction.atomic
 def store_records(records: Sequence[NewRecord]) -> StoredCount:
     """Store new records in the given order, and advance the UAVs' reported positions. Idempotent for the same records."""
-    known, organisations = _known_with_missions({record.uav_id for record in records})
+    known, organisations = known_with_missions({record.uav_id for record in records})
     lists = lists_on({record.uav_id for record in records if record.measurement.mission_item is not None})
     kept = [_attributed(record, known[record.uav_id], lists.get(record.uav_id)) for record in records if record.uav_id in known]
     if not kept:
@@ -85,7 +85,7 @@ def store_records(records: Sequence[NewRecord]) -> StoredCount:
     )
 
 
-def _known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set[int]]:
+def known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set[int]]:
     """Return existing UAVs with the missions that they fly, and their organisations. Locks the UAVs against deletion."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT id, organisation_id FROM missions_uav WHERE id = ANY(%s) ORDER BY id FOR KEY SHARE", [sorted(uav_ids)])
@@ -210,7 +210,7 @@ RETURNING stream_id, sequence
 def _insert(rows: Sequence[_Row]) -> list[_Row]:
     """Return the rows that were stored."""
     records = [row.record for row in rows]
-    streams = _stream_ids({(record.uav_id, record.link, record.stream) for record in records})
+    streams = stream_ids({(record.uav_id, record.link, record.stream) for record in records})
     columns: dict[str, list[object]] = {name: [getattr(record.measurement, name) for record in records] for name in _MEASURED}
     columns |= {name: [getattr(record, name) for record in records] for name in ("sequence", "uav_id", "mission_id")}
     columns |= {name: [getattr(record, name) for record in records] for name in ("measured_at", "received_at")}
@@ -224,7 +224,7 @@ def _insert(rows: Sequence[_Row]) -> list[_Row]:
     return [row for key, row in first.items() if key in stored]
 
 
-def _stream_ids(streams: set[tuple[int, str, str]]) -> dict[tuple[int, str, str], int]:
+def stream_ids(streams: set[tuple[int, str, str]]) -> dict[tuple[int, str, str], int]:
     uavs, links, keys = (list(column) for column in zip(*sorted(streams), strict=True))
     wanted = "unnest(%s::bigint[], %s::text[], %s::text[]) AS wanted(uav_id, link, key)"
     with connection.cursor() as cursor:

@@ -19,12 +19,13 @@ from missions.services.commands.dispatch import DamagedApproval, approved_load
 
 @dataclass(frozen=True, slots=True)
 class LoadedList:
-    """The list read back at `read_at`: `waypoints` of its items, and `first`, the number of the first item."""
+    """The list read back at `read_at`: `waypoints` of its items, and `first`, the number of the first item; `flight` is the route's."""
 
     mission_id: UUID
     read_at: datetime
     first: int
     waypoints: tuple[int | None, ...]
+    flight: int = 1
 
     def waypoint_of(self, item: int | None) -> int | None:
         """Return the waypoint of an item, as the vehicle counts; None for home, and outside the list."""
@@ -51,7 +52,7 @@ def lists_on(uav_ids: Iterable[int]) -> dict[int, LoadedList]:
         approved = _approved_waypoints(approval, uav_id, flight)
         if approved is not None:
             mission_id, waypoints = approved
-            found[uav_id] = LoadedList(mission_id, read_at, 1 if autopilot == AutopilotType.ARDUPILOT else 0, waypoints)
+            found[uav_id] = LoadedList(mission_id, read_at, 1 if autopilot == AutopilotType.ARDUPILOT else 0, waypoints, flight)
     return found
 
 

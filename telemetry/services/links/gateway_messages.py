@@ -12,6 +12,7 @@ from django.db import transaction
 
 from missions.models import Uav
 from telemetry.models import VehicleText
+from telemetry.services.captures import NewCapture, store_captures
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
 from telemetry.services.links.links import LinkState, save_links
 from telemetry.services.links.sightings import Sighting, note_unknown_vehicles
@@ -31,14 +32,17 @@ class ReceivedBatch:
     links: Sequence[LinkState] = ()
     texts: Sequence[ReceivedText] = ()
     sightings: Sequence[Sighting] = ()
+    captures: Sequence[NewCapture] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.records or self.links or self.texts or self.sightings)
+        return bool(self.records or self.links or self.texts or self.sightings or self.captures)
 
 
 @transaction.atomic
 def store_received(*, received: ReceivedBatch, holder: str) -> StoredCount:
     stored = store_records(received.records) if received.records else StoredCount()
+    if received.captures:
+        store_captures(received.captures)
     save_links(states=received.links, holder=holder)
     if received.texts:
         there = set(Uav.objects.filter(pk__in={text.uav_id for text in received.texts}).values_list("pk", flat=True))
