@@ -12,6 +12,7 @@ from telemetry.views.alerts import (
     Alerts,
     EndedAlertsAcknowledgement,
 )
+from telemetry.views.captures import CAPTURE_KINDS, MissionCaptures, MissionCapturesFile
 from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
@@ -40,6 +41,11 @@ class ResultKindConverter(FileKindConverter):
     regex = "|".join(RESULT_KINDS)
 
 
+class CaptureKindConverter(FileKindConverter):
+    regex = "|".join(CAPTURE_KINDS)
+
+
+register_converter(CaptureKindConverter, "capture_kind")
 register_converter(FileKindConverter, "file_kind")
 register_converter(ResultKindConverter, "result_kind")
 
@@ -65,6 +71,8 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),
     path("missions/<uuid:mission_id>/record.zip", MissionRecordFile.as_view(), name="api-mission-record-file"),
     path("missions/<uuid:mission_id>/results.<result_kind:kind>", MissionResultsFile.as_view(), name="api-mission-results-file"),
+    path("missions/<uuid:mission_id>/captures", MissionCaptures.as_view(), name="api-mission-captures"),
+    path("missions/<uuid:mission_id>/captures.<capture_kind:kind>", MissionCapturesFile.as_view(), name="api-mission-captures-file"),
     path("missions/<uuid:mission_id>/estimates", MissionEstimates.as_view(), name="api-mission-estimates"),
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),

@@ -92,6 +92,7 @@ class CaptureReport:
     yaw_frame: YawFrame | None = None
     attitude_source: AttitudeSource | None = None
     file_url: str = ""
+    sent_at: str = ""  # by a companion's clock
 
     def to_json(self) -> dict[str, Any]:
         stored = {one.name: getattr(self, one.name) for one in fields(self)}

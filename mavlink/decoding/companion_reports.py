@@ -1,8 +1,8 @@
-"""Reads and checks reports of companion computers from the HTTP link, and names each fault. Pure."""
+"""Reads and checks reports and photos of companion computers from the HTTP link, and names each fault. Pure."""
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -34,6 +34,18 @@ NUMBERS: Mapping[str, tuple[float, float]] = {  # inclusive
 }
 INTEGERS: Mapping[str, tuple[int, int]] = {"gps_fix": (0, 8), "satellites": (0, 255), "waypoint_sequence": (0, 65_535)}
 FLAGS = ("is_armed", "is_in_air")
+CAPTURE_NUMBERS: Mapping[str, tuple[float, float]] = {
+    **{name: NUMBERS[name] for name in ("altitude_amsl_m", "altitude_relative_m", "altitude_agl_m", "roll_deg", "pitch_deg")},
+    "yaw_deg": (-360, 360),
+    "position_bound_m": (0, 100_000),
+}
+CAPTURE_INTEGERS: Mapping[str, tuple[int, int]] = {
+    "image_index": (0, 2**31 - 1), "camera": (0, 255), "waypoint_sequence": INTEGERS["waypoint_sequence"],
+}  # fmt: skip
+MAX_URL_LENGTH = 205  # as in CAMERA_IMAGE_CAPTURED
+CAPTURE_KNOWN = frozenset(
+    {"sequence", "taken_at", "mission", "position", "is_taken", "file_url", *CAPTURE_NUMBERS, *CAPTURE_INTEGERS}
+)  # fmt: skip
 KNOWN = frozenset({"sequence", "measured_at", "mission", "position", "mode", *NUMBERS, *INTEGERS, *FLAGS})
 IDENTIFIER = re.compile(r"[0-9a-fA-F]{8}(-[0-9a-fA-F]{4}){3}-[0-9a-fA-F]{12}")
 BARE_HEIGHTS = ("altitude", "altitude_m", "height", "height_m")
@@ -50,6 +62,17 @@ class CompanionReport:
     values: Mapping[str, float | int | bool | str] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class CompanionCapture:
+    """One photo. `position` is longitude, latitude [deg]; `values` are the other fields sent, its angles those of the camera."""
+
+    sequence: int
+    taken_at: datetime
+    mission: str | None = None
+    position: tuple[float, float] | None = None
+    values: Mapping[str, float | int | bool | str] = field(default_factory=dict)
+
+
 class FaultyReport(Exception):
     """The report is invalid. `faults` holds a text for each field."""
 
@@ -60,22 +83,7 @@ class FaultyReport(Exception):
 
 def read_report(sent: Any, *, known_place: tuple[float, float] | None = None) -> CompanionReport:
     """Return the report in decoded JSON. `known_place` is the UAV's last position (longitude, latitude [deg]). Raises FaultyReport."""
-    if not isinstance(sent, dict):
-        raise FaultyReport({"": "A record is an object."})
-    faults = {str(name): _unknown(str(name)) for name in sent if name not in KNOWN}
-    read: dict[str, Any] = {}
-    for name in sorted(KNOWN & sent.keys()):
-        if sent[name] is None:
-            continue
-        try:
-            read[name] = _value(name, sent[name], known_place)
-        except ValueError as error:
-            faults[name] = str(error)
-    for name in ("sequence", "measured_at"):
-        if sent.get(name) is None:
-            faults[name] = "This field is required."
-    if faults:
-        raise FaultyReport(faults)
+    read = _fields(sent, KNOWN, ("sequence", "measured_at"), known_place)
     return CompanionReport(
         sequence=read.pop("sequence"),
         measured_at=read.pop("measured_at"),
@@ -85,23 +93,58 @@ def read_report(sent: Any, *, known_place: tuple[float, float] | None = None) ->
     )
 
 
+def read_capture(sent: Any, *, known_place: tuple[float, float] | None = None) -> CompanionCapture:
+    """Return the photo in decoded JSON, as read_report does a report. Raises FaultyReport."""
+    read = _fields(sent, CAPTURE_KNOWN, ("sequence", "taken_at"), known_place)
+    return CompanionCapture(
+        sequence=read.pop("sequence"),
+        taken_at=read.pop("taken_at"),
+        mission=read.pop("mission", None),
+        position=read.pop("position", None),
+        values=read,
+    )
+
+
+def _fields(sent: Any, known: frozenset[str], required: Sequence[str], known_place: tuple[float, float] | None) -> dict[str, Any]:
+    if not isinstance(sent, dict):
+        raise FaultyReport({"": "A record is an object."})
+    faults = {str(name): _unknown(str(name)) for name in sent if name not in known}
+    read: dict[str, Any] = {}
+    for name in sorted(known & sent.keys()):
+        if sent[name] is None:
+            continue
+        try:
+            read[name] = _value(name, sent[name], known_place)
+        except ValueError as error:
+            faults[name] = str(error)
+    for name in required:
+        if sent.get(name) is None:
+            faults[name] = "This field is required."
+    if faults:
+        raise FaultyReport(faults)
+    return read
+
+
 def _value(name: str, value: Any, known_place: tuple[float, float] | None) -> Any:
     if name == "position":
         return _position(value, known_place)
-    if name == "measured_at":
+    if name in ("measured_at", "taken_at"):
         return instant(value)
     if name == "mission":
         return _identifier(value)
     if name == "mode":
-        return _words(value)
-    if name in FLAGS:
+        return _words(value, MAX_MODE_LENGTH)
+    if name == "file_url":
+        return _words(value, MAX_URL_LENGTH)
+    if name in FLAGS or name == "is_taken":
         if not isinstance(value, bool):
             raise ValueError("true or false is needed.")
         return value
-    if name in NUMBERS:
-        found = _number(value, *NUMBERS[name])
-        return found % 360.0 if name == "heading_deg" else found
-    return whole_number(value, *INTEGERS.get(name, (0, MAX_SEQUENCE)))
+    limits = NUMBERS.get(name) or CAPTURE_NUMBERS.get(name)
+    if limits is not None:
+        found = _number(value, *limits)
+        return found % 360.0 % 360.0 if name in ("heading_deg", "yaw_deg") else found
+    return whole_number(value, *(INTEGERS.get(name) or CAPTURE_INTEGERS.get(name) or (0, MAX_SEQUENCE)))
 
 
 def instant(value: Any) -> datetime:
@@ -131,9 +174,9 @@ def _number(value: Any, lowest: float, highest: float) -> float:
     return float(value)
 
 
-def _words(value: Any) -> str:
-    if not isinstance(value, str) or len(value) > MAX_MODE_LENGTH or not value.isprintable():
-        raise ValueError(f"At most {MAX_MODE_LENGTH} printable characters.")
+def _words(value: Any, most: int) -> str:
+    if not isinstance(value, str) or len(value) > most or not value.isprintable():
+        raise ValueError(f"At most {most} printable characters.")
     return value
 
 

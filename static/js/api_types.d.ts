@@ -617,6 +617,13 @@ export interface components {
                 [key: string]: string | number | boolean;
             };
         };
+        /**
+         * @description * `camera` - camera
+         *     * `gimbal` - gimbal
+         *     * `vehicle` - vehicle
+         * @enum {string}
+         */
+        AttitudeSourceEnum: "camera" | "gimbal" | "vehicle";
         /** @description A place where UAVs stand and take off. */
         Base: {
             readonly id: number;
@@ -971,6 +978,97 @@ export interface components {
             distance_m: number;
             /** @description taken while it was visited; null: one of the times is not known */
             is_in_visit: boolean | null;
+        };
+        CaptureCollection: {
+            type: components["schemas"]["FeatureCollectionType"];
+            features: components["schemas"]["CaptureFeature"][];
+            /** @description path and query of the next page */
+            next: string | null;
+        };
+        CaptureFeature: {
+            type: components["schemas"]["FeatureType"];
+            id: number;
+            geometry: components["schemas"]["Point"] | null;
+            properties: components["schemas"]["CaptureProperties"];
+        };
+        /** @description A photo. Null is unknown, an empty source too; bounds are those of 95 %. */
+        CaptureProperties: {
+            uav: number;
+            uav_name: string;
+            /** Format: uuid */
+            mission: string | null;
+            /**
+             * Format: date-time
+             * @description by the server's clock
+             */
+            taken_at: string;
+            /** Format: date-time */
+            received_at: string;
+            time_source: components["schemas"]["TimeSourceEnum"];
+            /** Format: double */
+            time_bound_s: number | null;
+            /** @description of the approved route, from 1 */
+            flight: number | null;
+            /** @description of the approved route */
+            waypoint_sequence: number | null;
+            /** @description that the autopilot's list was at, as it counts */
+            mission_item: number | null;
+            /** @description false: the camera reported a failure */
+            is_taken: boolean;
+            /** @description MAVLink component of the camera */
+            camera: number | null;
+            /** @description as its sender counts; begins anew after a restart */
+            image_index: number | null;
+            position_source: components["schemas"]["PositionSourceEnum"] | components["schemas"]["BlankEnum"];
+            /**
+             * Format: double
+             * @description radius
+             */
+            position_bound_m: number | null;
+            /** Format: double */
+            altitude_amsl_m: number | null;
+            /**
+             * Format: double
+             * @description above take-off
+             */
+            altitude_relative_m: number | null;
+            /**
+             * Format: double
+             * @description above ground, as the UAV measured it
+             */
+            altitude_agl_m: number | null;
+            /**
+             * Format: double
+             * @description right side down
+             */
+            roll_deg: number | null;
+            /**
+             * Format: double
+             * @description from the horizon; -90 is straight down
+             */
+            pitch_deg: number | null;
+            /**
+             * Format: double
+             * @description clockwise
+             */
+            yaw_deg: number | null;
+            /**
+             * @description earth: from true north; vehicle: from the nose
+             *
+             *     * `earth` - earth
+             *     * `vehicle` - vehicle
+             */
+            yaw_frame: components["schemas"]["YawFrameEnum"] | components["schemas"]["BlankEnum"];
+            /**
+             * @description vehicle: of the airframe; where the camera looked is unknown
+             *
+             *     * `camera` - camera
+             *     * `gimbal` - gimbal
+             *     * `vehicle` - vehicle
+             */
+            attitude_source: components["schemas"]["AttitudeSourceEnum"] | components["schemas"]["BlankEnum"];
+            /** @description of the picture, as the camera names it */
+            file_url: string;
         };
         /** @description A camera body with one lens, on a gimbal. */
         CatalogueCamera: {
@@ -3068,6 +3166,58 @@ export interface components {
          * @enum {string}
          */
         LineTypeEnum: "LineString";
+        /** @description One photo. Its angles are those of the camera, the yaw from true north. Unknown values are omitted or null. */
+        LinkCaptureRequest: {
+            /**
+             * Format: int64
+             * @description grows within the stream
+             */
+            sequence: number;
+            /**
+             * Format: date-time
+             * @description by the UAV's clock, with its zone
+             */
+            taken_at: string;
+            /**
+             * Format: uuid
+             * @description without it: the one that the UAV flies
+             */
+            mission?: string | null;
+            /**
+             * @description lon, lat [deg], WGS84
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position?: number[] | null;
+            /** @description false: the camera failed */
+            is_taken?: boolean | null;
+            /** @description name or address of the picture */
+            file_url?: string | null;
+            /** Format: double */
+            altitude_amsl_m?: number | null;
+            /** Format: double */
+            altitude_relative_m?: number | null;
+            /** Format: double */
+            altitude_agl_m?: number | null;
+            /** Format: double */
+            roll_deg?: number | null;
+            /** Format: double */
+            pitch_deg?: number | null;
+            /** Format: double */
+            yaw_deg?: number | null;
+            /** Format: double */
+            position_bound_m?: number | null;
+            image_index?: number | null;
+            camera?: number | null;
+            waypoint_sequence?: number | null;
+        };
+        LinkCapturesRequest: {
+            /** @description one run of the UAV's counter: a new one whenever its numbers begin anew */
+            stream: string;
+            captures: components["schemas"]["LinkCaptureRequest"][];
+        };
         /**
          * @description * `mavlink` - MAVLink
          *     * `http` - Companion computer over HTTP
@@ -4934,6 +5084,12 @@ export interface components {
              */
             ground_amsl_m?: number | null;
         };
+        /**
+         * @description * `photo` - photo
+         *     * `vehicle` - vehicle
+         * @enum {string}
+         */
+        PositionSourceEnum: "photo" | "vehicle";
         Preflight: {
             /**
              * @description connect: none is ready, and none that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; start: POST …/planned-starts with those that are ready; null: nothing is left to start
@@ -5562,6 +5718,8 @@ export interface components {
             name: string;
             /** @description no real aircraft */
             is_simulated: boolean;
+            /** @description taken in this mission; their poses: /missions/{id}/captures */
+            photos: number;
             /** Format: date-time */
             departs_at: string | null;
             planned: components["schemas"]["PlannedRoute"];
@@ -7213,6 +7371,14 @@ export interface components {
              */
             slipped_s: number;
         };
+        /** @description Every photo of the batch is stored, known or refused; none needs to be sent again unchanged. */
+        StoredCaptures: {
+            /** @description new ones, also those that another message told of before */
+            stored: number;
+            /** @description that had been stored before, under the same stream and sequence */
+            known: number;
+            refused: components["schemas"]["Refused"][];
+        };
         /** @description Every record of the batch is stored, known or refused; none needs to be sent again unchanged. */
         StoredReports: {
             /** @description new ones */
@@ -7483,6 +7649,14 @@ export interface components {
          * @enum {string}
          */
         Theme: "system" | "light" | "dark";
+        /**
+         * @description * `vehicle-clock` - vehicle-clock
+         *     * `utc` - utc
+         *     * `uav` - uav
+         *     * `receipt` - receipt
+         * @enum {string}
+         */
+        TimeSourceEnum: "vehicle-clock" | "utc" | "uav" | "receipt";
         /** @description A time span; its end is excluded. */
         TimeSpan: {
             /** Format: date-time */
@@ -8705,6 +8879,12 @@ export interface components {
             /** @description the first 2,000 of them */
             assets: components["schemas"]["PickedAsset"][];
         };
+        /**
+         * @description * `earth` - earth
+         *     * `vehicle` - vehicle
+         * @enum {string}
+         */
+        YawFrameEnum: "earth" | "vehicle";
         /** @description A stretch of the line in a zone, or within the requested distance of it. */
         ZoneAlong: {
             id: number;
@@ -9030,6 +9210,7 @@ export type AssetKind = components['schemas']['AssetKind'];
 export type AssetMission = components['schemas']['AssetMission'];
 export type AssetMissionPage = components['schemas']['AssetMissionPage'];
 export type AssetProperties = components['schemas']['AssetProperties'];
+export type AttitudeSourceEnum = components['schemas']['AttitudeSourceEnum'];
 export type Base = components['schemas']['Base'];
 export type BasePage = components['schemas']['BasePage'];
 export type BaseRequest = components['schemas']['BaseRequest'];
@@ -9057,6 +9238,9 @@ export type CameraCatalogue = components['schemas']['CameraCatalogue'];
 export type CameraHeightReference = components['schemas']['CameraHeightReference'];
 export type CameraRequest = components['schemas']['CameraRequest'];
 export type Candidate = components['schemas']['Candidate'];
+export type CaptureCollection = components['schemas']['CaptureCollection'];
+export type CaptureFeature = components['schemas']['CaptureFeature'];
+export type CaptureProperties = components['schemas']['CaptureProperties'];
 export type CatalogueCamera = components['schemas']['CatalogueCamera'];
 export type CatalogueSource = components['schemas']['CatalogueSource'];
 export type Category = components['schemas']['Category'];
@@ -9220,6 +9404,8 @@ export type LimitEnum = components['schemas']['LimitEnum'];
 export type LimitInputRequest = components['schemas']['LimitInputRequest'];
 export type Line = components['schemas']['Line'];
 export type LineTypeEnum = components['schemas']['LineTypeEnum'];
+export type LinkCaptureRequest = components['schemas']['LinkCaptureRequest'];
+export type LinkCapturesRequest = components['schemas']['LinkCapturesRequest'];
 export type LinkKind = components['schemas']['LinkKind'];
 export type ListedJob = components['schemas']['ListedJob'];
 export type Live = components['schemas']['Live'];
@@ -9349,6 +9535,7 @@ export type Point = components['schemas']['Point'];
 export type PointRequest = components['schemas']['PointRequest'];
 export type PointTypeEnum = components['schemas']['PointTypeEnum'];
 export type PoolUavRequest = components['schemas']['PoolUavRequest'];
+export type PositionSourceEnum = components['schemas']['PositionSourceEnum'];
 export type Preflight = components['schemas']['Preflight'];
 export type PreflightCheck = components['schemas']['PreflightCheck'];
 export type PreflightCheckStateEnum = components['schemas']['PreflightCheckStateEnum'];
@@ -9498,6 +9685,7 @@ export type StaleCause = components['schemas']['StaleCause'];
 export type StaleCauseWhatEnum = components['schemas']['StaleCauseWhatEnum'];
 export type StartsInputRequest = components['schemas']['StartsInputRequest'];
 export type StepTiming = components['schemas']['StepTiming'];
+export type StoredCaptures = components['schemas']['StoredCaptures'];
 export type StoredReports = components['schemas']['StoredReports'];
 export type StoredResults = components['schemas']['StoredResults'];
 export type Straight = components['schemas']['Straight'];
@@ -9520,6 +9708,7 @@ export type TaskOutput = components['schemas']['TaskOutput'];
 export type TaskRequest = components['schemas']['TaskRequest'];
 export type TerrainEnum = components['schemas']['TerrainEnum'];
 export type Theme = components['schemas']['Theme'];
+export type TimeSourceEnum = components['schemas']['TimeSourceEnum'];
 export type TimeSpan = components['schemas']['TimeSpan'];
 export type TimedRouteRequest = components['schemas']['TimedRouteRequest'];
 export type TimedWaypointRequest = components['schemas']['TimedWaypointRequest'];
@@ -9592,6 +9781,7 @@ export type WindLayerRequest = components['schemas']['WindLayerRequest'];
 export type Wish = components['schemas']['Wish'];
 export type WithinInputRequest = components['schemas']['WithinInputRequest'];
 export type WithinOutput = components['schemas']['WithinOutput'];
+export type YawFrameEnum = components['schemas']['YawFrameEnum'];
 export type ZoneAlong = components['schemas']['ZoneAlong'];
 export type ZoneApproach = components['schemas']['ZoneApproach'];
 export type ZoneCollection = components['schemas']['ZoneCollection'];

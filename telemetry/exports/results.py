@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from inspection.geodesy import LonLat
+from telemetry.exports.captures import CaptureRow
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,3 +73,4 @@ class MissionResults:
     rows: Sequence[ResultRow]
     routes: Sequence[RouteLines]
     incidents: Sequence[IncidentRow]
+    photos: Sequence[CaptureRow] = ()

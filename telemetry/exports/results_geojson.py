@@ -1,10 +1,11 @@
-"""Results of a mission as GeoJSON (RFC 7946): targets, incidents, planned and flown lines."""
+"""Results of a mission as GeoJSON (RFC 7946): targets, incidents, photos, planned and flown lines."""
 
 import json
 from collections.abc import Iterator
 from typing import Any
 
 from inspection.geodesy import LonLat
+from telemetry.exports.captures import CaptureRow, capture_feature
 from telemetry.exports.logged_record import time_text
 from telemetry.exports.results import MissionResults, RouteLines
 from telemetry.exports.results_table import COLUMNS
@@ -13,12 +14,13 @@ _PLACES = {"longitude_deg", "latitude_deg"}
 
 
 def results_geojson(results: MissionResults) -> bytes:
-    """Return the file. `kind` of a feature is target, incident, planned or flown.
+    """Return the file. `kind` of a feature is target, incident, photo, planned or flown.
 
     A height is a property, because GeoJSON's third coordinate has another reference. A line has `times` and `altitudes_relative_m` with an
     entry for each of its points.
     """
-    features = [*_targets(results), *_incidents(results), *(feature for route in results.routes for feature in _lines(route))]
+    lines = (feature for route in results.routes for feature in _lines(route))
+    features = [*_targets(results), *_incidents(results), *map(_photo, results.photos), *lines]
     return json.dumps({"type": "FeatureCollection", "name": results.name, "features": features}, ensure_ascii=False, default=str).encode()
 
 
@@ -46,6 +48,11 @@ def _targets(results: MissionResults) -> Iterator[dict[str, Any]]:
 def _incidents(results: MissionResults) -> Iterator[dict[str, Any]]:
     for one in results.incidents:
         yield _feature("incident", _point(one.position), {"at": time_text(one.at), "uav": one.uav, "words": one.words})
+
+
+def _photo(row: CaptureRow) -> dict[str, Any]:
+    feature = capture_feature(row)
+    return _feature("photo", feature["geometry"], feature["properties"])
 
 
 def _lines(route: RouteLines) -> Iterator[dict[str, Any]]:

@@ -20,7 +20,9 @@ INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 1.0,
     mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0,
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
+    mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS: 1.0,  # for photos whose message has no attitude of the camera
 }
+OPTIONAL = frozenset({mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS})  # not every vehicle has it
 WIND = {AutopilotType.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, AutopilotType.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
 WIND_INTERVAL_S = 2.0
 ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_HOME_POSITION)

@@ -152,6 +152,8 @@ class MessageRequests:
         return now_s - self._first_s >= LISTENS_S and now_s - self._station_s >= STATION_GONE_S
 
     def _is_missing(self, number: int, every_s: float, now_s: float) -> bool:
+        if number in heartbeat.OPTIONAL and number not in self._received_s:
+            return False
         return now_s - self._received_s.get(number, -math.inf) > max(MISSING_INTERVALS * every_s, ASK_AGAIN_S)
 
     def may_ask_limits(self, state: VehicleState) -> bool:

@@ -17,6 +17,7 @@ from telemetry.mission_report.flown_route import ReportedRoute, flown_route
 from telemetry.mission_report.outcomes import FlightFacts, Incident, Outcome, OutcomeReason, Result, TargetFacts, outcome_of
 from telemetry.mission_report.visits import ReportedVisit, visits_of
 from telemetry.models import Alert, AlertLevel, InspectionResult, TelemetryRecord
+from telemetry.selectors.captures import photos_by_uav
 from telemetry.selectors.columns import latitude, longitude, unix_s
 from telemetry.selectors.estimates import estimate_quality_of
 from telemetry.selectors.incidents import incidents_of
@@ -147,6 +148,7 @@ def mission_record(mission: Mission) -> dict[str, Any]:
     approval, routes = whole.approval, whole.routes
     flown_by = [route.uav_id for route in routes if route.uav_id is not None]
     simulated = set(Uav.objects.filter(pk__in=flown_by, is_simulated=True).values_list("pk", flat=True))
+    photos = photos_by_uav(mission)
     return {
         "mission": {
             "id": mission.pk,
@@ -164,7 +166,10 @@ def mission_record(mission: Mission) -> dict[str, Any]:
         },
         "summary": _summary(whole),
         "incidents": [_incident(one, routes) for one in whole.incidents],
-        "routes": [_route(route, mission) | {"is_simulated": route.uav_id in simulated} for route in routes],
+        "routes": [
+            _route(route, mission) | {"is_simulated": route.uav_id in simulated, "photos": photos.get(route.uav_id or 0, 0)}
+            for route in routes
+        ],
         "targets": _targets(whole),
         "results": _results(mission),
     }

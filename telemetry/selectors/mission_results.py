@@ -13,6 +13,7 @@ from telemetry.exports.thinning import EARLY, INTERVAL_S
 from telemetry.mission_report.fix import Fix
 from telemetry.mission_report.flown_route import MAX_GAP_S
 from telemetry.mission_report.outcomes import Incident
+from telemetry.selectors.captures import all_captures
 from telemetry.selectors.mission_record import RouteOnRecord, TargetOnRecord, WholeRecord, at, in_flown_order
 from telemetry.selectors.report_words import reason_words
 
@@ -35,6 +36,7 @@ def mission_results(whole: WholeRecord) -> MissionResults:
         [_row(number, target, external_ids) for number, target in enumerate(in_flown_order(whole.targets), start=1)],
         [_lines(route) for route in whole.routes],
         [_incident(one, names) for one in whole.incidents],
+        list(all_captures(mission)),
     )
 
 

@@ -152,6 +152,7 @@ class RecordRouteSerializer(serializers.Serializer):
     uav = serializers.IntegerField(allow_null=True)
     name = serializers.CharField()
     is_simulated = serializers.BooleanField(help_text="no real aircraft")
+    photos = serializers.IntegerField(help_text="taken in this mission; their poses: /missions/{id}/captures")
     departs_at = serializers.DateTimeField(allow_null=True)
     planned = PlannedRouteSerializer()
     flown = FlownRouteSerializer()

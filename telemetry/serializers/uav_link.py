@@ -6,7 +6,16 @@ from typing import Any
 from drf_spectacular.utils import extend_schema_serializer
 from rest_framework import serializers
 
-from mavlink.decoding.companion_reports import FLAGS, INTEGERS, MAX_MODE_LENGTH, NUMBERS, instant
+from mavlink.decoding.companion_reports import (
+    CAPTURE_INTEGERS,
+    CAPTURE_NUMBERS,
+    FLAGS,
+    INTEGERS,
+    MAX_MODE_LENGTH,
+    MAX_URL_LENGTH,
+    NUMBERS,
+    instant,
+)
 from missions.fields import PositionField
 from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -17,6 +26,7 @@ from workspace.jobs.serializers import Declared
 MAX_RECORDS = 1_000
 MAX_ACKNOWLEDGEMENTS = 100
 MAX_RESULTS = 100
+MAX_CAPTURES = 200
 MAX_FLIGHTS = 10_000
 MAX_PLACE = 2**31 - 1
 MAX_RESULT_BYTES = 64 * 1024
@@ -64,6 +74,39 @@ class ReportsEnvelopeSerializer(KnownFieldsSerializer):
     records = serializers.ListField(min_length=1, max_length=MAX_RECORDS)
 
 
+class LinkCaptureSerializer(serializers.Serializer):
+    """One photo. Its angles are those of the camera, the yaw from true north. Unknown values are omitted or null."""
+
+    sequence = serializers.IntegerField(min_value=0, max_value=MAX_SEQUENCE, help_text="grows within the stream")
+    taken_at = serializers.DateTimeField(help_text="by the UAV's clock, with its zone")
+    mission = serializers.UUIDField(required=False, allow_null=True, help_text="without it: the one that the UAV flies")
+    position = PositionField(required=False, allow_null=True)
+    is_taken = serializers.BooleanField(required=False, allow_null=True, help_text="false: the camera failed")
+    file_url = serializers.CharField(required=False, allow_null=True, max_length=MAX_URL_LENGTH, help_text="name or address of the picture")
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        fields: dict[str, serializers.Field] = super().get_fields()
+        for name, (lowest, highest) in CAPTURE_NUMBERS.items():
+            fields[name] = serializers.FloatField(required=False, allow_null=True, min_value=lowest, max_value=highest)
+        for name, (lowest, highest) in CAPTURE_INTEGERS.items():
+            fields[name] = serializers.IntegerField(required=False, allow_null=True, min_value=lowest, max_value=highest)
+        return fields
+
+
+class LinkCapturesSerializer(serializers.Serializer):
+    stream = StreamField()
+    captures: serializers.ListSerializer[Any] = serializers.ListSerializer(
+        child=LinkCaptureSerializer(), min_length=1, max_length=MAX_CAPTURES
+    )
+
+
+class LinkCapturesEnvelopeSerializer(KnownFieldsSerializer):
+    """A batch whose photos are validated one by one later."""
+
+    stream = StreamField()
+    captures = serializers.ListField(min_length=1, max_length=MAX_CAPTURES)
+
+
 class RefusedSerializer(serializers.Serializer):
     index = serializers.IntegerField(help_text="its place in the batch")
     sequence = serializers.JSONField(allow_null=True, help_text="as it was sent")
@@ -77,6 +120,14 @@ class StoredReportsSerializer(serializers.Serializer):
     known = serializers.IntegerField(help_text="that had been stored before, under the same stream and sequence")
     from_future = serializers.IntegerField(help_text="of the stored: measured more than a minute after they came")
     late = serializers.IntegerField(help_text="of the stored: measured before one that was stored earlier")
+    refused = RefusedSerializer(many=True)
+
+
+class StoredCapturesSerializer(serializers.Serializer):
+    """Every photo of the batch is stored, known or refused; none needs to be sent again unchanged."""
+
+    stored = serializers.IntegerField(help_text="new ones, also those that another message told of before")
+    known = serializers.IntegerField(help_text="that had been stored before, under the same stream and sequence")
     refused = RefusedSerializer(many=True)
 
 

@@ -45,8 +45,11 @@ class CaptureCount:
 
 
 @transaction.atomic
-def store_captures(new: Sequence[NewCapture]) -> CaptureCount:
-    """Store reports of photos. Idempotent for the same reports; the order does not matter."""
+def store_captures(new: Sequence[NewCapture], *, of_present_mission: bool = True) -> CaptureCount:
+    """Store reports of photos. Idempotent for the same reports; the order does not matter.
+
+    of_present_mission: those that name no mission belong to the one that the UAV flies now, or was sent.
+    """
     uav_ids = {one.uav_id for one in new}
     missions, _ = known_with_missions(uav_ids)
     for uav_id in sorted(missions):
@@ -60,7 +63,7 @@ def store_captures(new: Sequence[NewCapture]) -> CaptureCount:
     photos = joined = 0
     for one in sorted(fresh, key=lambda one: (one.report.taken_s, one.report.key)):
         known = _same_photo(one)
-        capture = known or _begun(one, missions[one.uav_id], lists.get(one.uav_id))
+        capture = known or _begun(one, missions[one.uav_id] if of_present_mission else None, lists.get(one.uav_id))
         photos, joined = photos + (known is None), joined + (known is not None)
         CaptureReport.objects.create(
             capture=capture, stream_id=streams[one.uav_id, one.link, one.stream], key=one.report.key, source=one.report.source,

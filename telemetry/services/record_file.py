@@ -12,10 +12,12 @@ from django.core.serializers.json import DjangoJSONEncoder
 
 from missions.models import Mission
 from missions.selectors.commands import commands_of_mission
+from telemetry.exports.captures import captures_csv, captures_geojson
 from telemetry.exports.csv_file import csv_of_records
 from telemetry.exports.geojson_file import geojson_of_records
 from telemetry.exports.thinning import rounded
 from telemetry.models import Alert, FlightLog, PositionEstimate
+from telemetry.selectors.captures import all_captures
 from telemetry.selectors.columns import latitude, longitude
 from telemetry.selectors.log import LogFilter, logged, records_that_match
 from telemetry.selectors.mission_record import approval_on_record, mission_record
@@ -28,6 +30,8 @@ record.json       what was planned and flown, by leg and target, and what UAVs f
 approval.json     the plan as it was approved: routes, zones, conditions; content_sha256 names it
 telemetry.csv     every record of every UAV, units in the names of the columns, rounded to the resolution of the sensors
 telemetry.geojson the same as GeoJSON
+photos.csv        every photo that was reported: where, when, and where the camera looked, with bounds
+photos.geojson    the same as GeoJSON
 estimates.jsonl   where UAVs were estimated to be between reports, one JSON object a line
 alerts.json       with their notes
 commands.json     what UAVs were told, by whom, and what became of it
@@ -55,6 +59,9 @@ def record_file(organisation: Organisation, mission: Mission) -> IO[bytes]:
         if records.exists():
             _write(packed, "telemetry.csv", csv_of_records(map(rounded, logged(records, "measured_at", "pk"))))
             _write(packed, "telemetry.geojson", geojson_of_records(map(rounded, logged(records, "measured_at", "pk"))))
+        if mission.captures.exists():
+            _write(packed, "photos.csv", captures_csv(all_captures(mission)))
+            _write(packed, "photos.geojson", captures_geojson(all_captures(mission)))
         if PositionEstimate.objects.filter(mission=mission).exists():
             _write(packed, "estimates.jsonl", _estimates(mission))
         packed.writestr("alerts.json", _json(_alerts(mission)))

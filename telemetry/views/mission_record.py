@@ -121,7 +121,7 @@ class MissionResultsFile(APIView):
         summary="The results of a mission, as CSV, XLSX, GeoJSON or KML",
         description=(
             "Of each target: asset, line, result, reason, UAV, time, hold, distance and height, in flown order. GeoJSON and KML also have "
-            "what happened to UAVs, the planned lines, and the flown ones with a point a second."
+            "what happened to UAVs, the planned lines, and the flown ones with a point a second. GeoJSON also has the photos."
         ),
         parameters=[RESULT_KIND],
         responses=RESULT_FILES,

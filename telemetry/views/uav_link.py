@@ -17,15 +17,19 @@ from missions.services.commands.flight_progress import FlightEnd
 from telemetry.serializers.uav_link import (
     AcknowledgementsSerializer,
     GivenSerializer,
+    LinkCapturesEnvelopeSerializer,
+    LinkCapturesSerializer,
     NotedListSerializer,
     ReportsEnvelopeSerializer,
     ReportsSerializer,
     ResultsEnvelopeSerializer,
     ResultsSerializer,
+    StoredCapturesSerializer,
     StoredReportsSerializer,
     StoredResultsSerializer,
     read_result,
 )
+from telemetry.services.links.companion_captures import take_captures
 from telemetry.services.links.companion_reports import USED_AGAIN, take_reports
 from telemetry.services.links.http_messages import note_received_over_http
 from telemetry.services.links.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
@@ -125,6 +129,33 @@ class UavTelemetry(UavView):
                 "known": taken.counts.duplicates,
                 "from_future": taken.counts.from_future,
                 "late": taken.counts.late,
+                "refused": [_refused(report.index, sent[report.index], report.faults) for report in taken.refused],
+            }
+        )
+
+
+class UavCaptures(UavView):
+    parser_classes = [MeasuredJSONParser]
+
+    @extend_schema(
+        operation_id="report_captures",
+        summary="Report photos: where and when they were taken, and where the camera looked",
+        description=(
+            "Taken and numbered like telemetry, in streams of their own. A photo that autopilot or camera told of by MAVLink within "
+            "a second is the same one."
+        ),
+        request=LinkCapturesSerializer,
+        responses=StoredCapturesSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        received_at = timezone.now()
+        envelope = _envelope(LinkCapturesEnvelopeSerializer, request)
+        uav, sent = uav_access(request), envelope["captures"]
+        taken = take_captures(uav_id=uav.uav_id, place=uav.place, stream=envelope["stream"], sent=sent, received_at=received_at)
+        return Response(
+            {
+                "stored": taken.counts.photos + taken.counts.joined,
+                "known": taken.counts.known,
                 "refused": [_refused(report.index, sent[report.index], report.faults) for report in taken.refused],
             }
         )

@@ -8,7 +8,8 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.frames import HEADER_V1, HEADER_V2, IS_SIGNED, MARKER_V2, SIGNATURE, frames_of_datagram, message_of
+from mavlink.decoding import flight_log
+from mavlink.frames import frames_of_datagram, message_of
 from mavlink.mission_items import flight_loads
 from simulation.flight.states import FlightMode
 from simulation.flight.uav import SimulatedUav
@@ -25,15 +26,8 @@ UNKNOWN_MESSAGE = 229  # no message of the dialect has this id
 
 def frames_of_tlog(path: Path) -> list[tuple[float, bytes]]:
     """Each with its time [s since 1970]; those of messages that nobody knows too."""
-    data, frames, place = path.read_bytes(), [], 0
-    while place + 8 + HEADER_V1 <= len(data):
-        at_s = int.from_bytes(data[place : place + 8], "big") / 1e6
-        start = place + 8
-        is_v2 = data[start] == MARKER_V2
-        length = (HEADER_V2 if is_v2 else HEADER_V1) + data[start + 1] + 2 + (SIGNATURE if is_v2 and data[start + 2] & IS_SIGNED else 0)
-        frames.append((at_s, data[start : start + length]))
-        place = start + length
-    return frames
+    with path.open("rb") as file:
+        return list(flight_log.frames_of_tlog(file))
 
 
 def positions_of(raws: Iterable[bytes]) -> list[Any]:

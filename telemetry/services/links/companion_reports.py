@@ -42,7 +42,7 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
             read[index] = read_report(record, known_place=place)
         except FaultyReport as error:
             refused.append(RefusedReport(index, error.faults))
-    own = _own_missions(uav_id, {UUID(report.mission) for report in read.values() if report.mission})
+    own = own_missions(uav_id, {UUID(report.mission) for report in read.values() if report.mission})
     for index in [index for index, report in read.items() if report.mission and UUID(report.mission) not in own]:
         del read[index]
         refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
@@ -64,7 +64,7 @@ def _numbers_used_again(uav_id: int, stream: str, records: Mapping[int, NewRecor
     return [index for index, record in records.items() if stored.get(record.sequence, record.measured_at) != record.measured_at]
 
 
-def _own_missions(uav_id: int, named: set[UUID]) -> set[UUID]:
+def own_missions(uav_id: int, named: set[UUID]) -> set[UUID]:
     if not named:
         return set()
     return set(MissionUav.objects.filter(uav_id=uav_id, mission_id__in=named).values_list("mission_id", flat=True))

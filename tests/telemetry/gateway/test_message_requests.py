@@ -8,6 +8,7 @@ from telemetry.gateway.heartbeat import FRAME_BYTES, INTERVALS_S, MAX_STRETCH_FA
 from telemetry.gateway.message_requests import ASK_AGAIN_S, LISTENS_S, STATION_GONE_S, MessageRequests
 
 POSITION, BATTERY = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS
+GIMBAL = mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS
 WANTED = set(intervals_s(AutopilotType.ARDUPILOT, 0.0))
 
 
@@ -66,6 +67,17 @@ def test_a_message_that_does_not_come_is_asked_for_again_by_itself_ever_more_rar
         assert intervals <= {BATTERY}
         times += [second] if intervals else []
     assert times and len(times) <= 6 and times[-1] - times[-2] > times[1] - times[0]
+
+
+def test_the_attitude_of_a_gimbal_is_asked_for_again_only_where_there_is_one() -> None:
+    for has_gimbal in (False, True):
+        message_requests, found = MessageRequests(), set()
+        assert GIMBAL in asked(message_requests.due(copter(), 0.0, has_position=False))[0]
+        for second in range(1, 100):
+            feed(message_requests, float(second), *(WANTED - {GIMBAL}), *([GIMBAL] if has_gimbal and second < 20 else []))
+            intervals, streams = asked(message_requests.due(copter(), float(second), has_position=True))
+            found |= set() if streams else intervals
+        assert found == ({GIMBAL} if has_gimbal else set())
 
 
 def test_streams_are_started_where_intervals_are_refused() -> None:

@@ -17,9 +17,12 @@ from missions.models import Approval, Mission, Uav
 from missions.services.commands.dispatch import abort_mission
 from missions.services.commands.flight_progress import mark_started, mark_waypoint_reached
 from telemetry.models import TelemetryRecord
+from telemetry.services.captures import store_captures
+from tests.mavlink.decoding.photos import captured
 from tests.missions.flights import dispatched, fleet
 from tests.missions.worlds import World
 from tests.telemetry.flown import fly, route_of
+from tests.telemetry.test_captures import new
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db
@@ -77,9 +80,14 @@ def test_a_workbook_opens_with_headings_numbers_and_times(client: Client, flown:
     assert len(rows) == 4 and not any(node.tag.endswith("}f") for node in sheet.iter()), "no formula"
 
 
-def test_a_map_has_targets_incidents_planned_and_flown_lines_at_one_hertz(client: Client, flown: Mission) -> None:
+def test_a_map_has_targets_incidents_photos_planned_and_flown_lines_at_one_hertz(client: Client, flown: Mission) -> None:
+    tern = Uav.objects.get(name="Tern")
+    store_captures([new(tern, captured(3), 1.0, mission_id=flown.pk)])
     features = json.loads(body_of(client, flown, "geojson"))["features"]
     kinds = [feature["properties"]["kind"] for feature in features]
+    (photo,) = [feature for feature in features if feature["properties"]["kind"] == "photo"]
+    assert (photo["properties"]["image_index"], photo["geometry"]["type"]) == (3, "Point")
+    assert client.get(f"/api/v1/missions/{flown.pk}/record").json()["routes"][0]["photos"] == 1
     assert [kinds.count(kind) for kind in ("target", "incident", "planned", "flown")] == [3, 1, 1, 1]
     line = next(feature for feature in features if feature["properties"]["kind"] == "flown")
     times = [datetime.fromisoformat(moment) for moment in line["properties"]["times"]]

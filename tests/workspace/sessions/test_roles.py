@@ -63,7 +63,7 @@ def test_strangers_are_refused_everywhere() -> None:
 
 def test_what_is_for_uavs_is_for_no_user() -> None:
     asked = [(method, address) for method, address, _ in operations() if FOR_UAVS_ALONE.match(address)]
-    assert len(asked) == 4
+    assert len(asked) == 5
     for role in Role:
         assert {status(client_of(a_user(role)), method, address) for method, address in asked} == {401}
 
