@@ -1,16 +1,19 @@
 """A mission is approved, sent, started, held, resumed and flown to its end by a simulated UAV that the gateway takes for any other."""
 
 import pytest
+from pymavlink.dialects.v20.common import MAV_CMD_IMAGE_START_CAPTURE
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionType
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
+from missions.services import TargetRequest
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission, load_of
+from planning.problem import Task, TaskKind
 from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
-from telemetry.models import TelemetryRecord, UavLink
+from telemetry.models import Capture, TelemetryRecord, UavLink
 from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
@@ -34,7 +37,8 @@ def mission(settings, tmp_path, uav_and_key) -> Mission:
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
     settings.FLIGHT_LOG_DIR = tmp_path
     ground(tmp_path / "hill.tif", GROUND_M)
-    mission, _ = approved(a_user(), [uav_and_key[0]], world().towers[:1])
+    target = TargetRequest(world().towers[0].pk, task=Task(TaskKind.PHOTO, 6.0))
+    mission, _ = approved(a_user(), [uav_and_key[0]], [target])
     return mission
 
 
@@ -81,6 +85,10 @@ def test_a_mission_is_flown_to_its_end(autopilot_type, uav_and_key, mission, tmp
         order(CommandKind.RESUME)
         wait_for(lambda: fresh(mission).state == MissionState.COMPLETED, "the end of the mission", patience_s=90.0)
     assert set(mission.targets.values_list("state", flat=True)) == {TargetState.COMPLETE}
+    (waypoint,) = {item.waypoint for item in load.load.mission if item.command == MAV_CMD_IMAGE_START_CAPTURE}
+    photos = Capture.objects.filter(mission=mission, uav=uav, is_taken=True)
+    assert set(photos.values_list("flight", "waypoint_sequence")) == {(1, waypoint)}
+    assert photos.count() == fleet.uavs[0].uav.state.photos == 2
     records = TelemetryRecord.objects.filter(uav=uav)
     assert records.filter(
         is_in_air=True, mode={SimulatedAutopilot.PX4: "MISSION", SimulatedAutopilot.ARDUPILOT: "AUTO"}[autopilot_type]
