@@ -9,6 +9,7 @@ from uuid import UUID
 from django.contrib.gis.geos import Point
 from django.db import transaction
 
+from inspection.geodesy import LonLat
 from mavlink.decoding import captures as decoded
 from telemetry.models import Capture, CaptureReport
 from telemetry.services.ingest import known_with_missions, stream_ids
@@ -100,14 +101,18 @@ def _same_photo(new: NewCapture) -> Capture | None:
 
 def _begun(new: NewCapture, flies_mission: UUID | None, loaded: LoadedList | None) -> Capture:
     mission_id = new.mission_id or flies_mission
-    waypoint, flight = new.waypoint_sequence, None
-    taken_at = _time(new.report.taken_s)
+    waypoint, flight, report = new.waypoint_sequence, None, new.report
+    taken_at = _time(report.taken_s)
     if loaded is not None and loaded.mission_id == mission_id and taken_at >= loaded.read_at:
         flight = loaded.flight
-        waypoint = loaded.waypoint_at(new.mission_item, taken_at, mission_id) if waypoint is None else waypoint
+        position = (
+            None if report.longitude_deg is None or report.latitude_deg is None else LonLat(report.longitude_deg, report.latitude_deg)
+        )
+        if waypoint is None:
+            waypoint = loaded.waypoint_of_photo(new.mission_item, position, report.altitude_relative_m)
     return Capture.objects.create(
         uav_id=new.uav_id, mission_id=mission_id, flight=flight, waypoint_sequence=waypoint, mission_item=new.mission_item,
-        received_at=new.received_at, **_columns([new.report]),
+        received_at=new.received_at, **_columns([report]),
     )  # fmt: skip
 
 

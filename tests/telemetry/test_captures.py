@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from django.utils import timezone
 
+from inspection.geodesy import LonLat
 from mavlink.autopilot_type import AutopilotType
 from mavlink.decoding.boots import VehicleTime
 from mavlink.decoding.captures import CaptureDecoder
@@ -15,6 +16,7 @@ from missions.models import LinkKind, Mission, Uav
 from telemetry.models import Capture, CaptureReport, TelemetryStream
 from telemetry.services import forget_old_telemetry
 from telemetry.services.captures import CaptureCount, NewCapture, store_captures
+from telemetry.services.waypoints import LoadedList, PhotoItem
 from tests.mavlink.decoding.photos import LON_E7, NOW_S, captured, feedback, synchronised, trigger
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import at
@@ -125,6 +127,21 @@ def test_photos_belong_to_the_mission_that_the_uav_flies_and_unknown_uavs_have_n
     assert Capture.objects.get().mission == mission
     mission.delete()
     assert Capture.objects.get().mission is None
+
+
+@pytest.mark.parametrize(("autopilot", "first"), [("px4", 0), ("ardupilot", 1)])
+def test_photo_belongs_to_the_waypoint_that_it_was_taken_at_wherever_the_list_is_by_then(autopilot, first):
+    """Two waypoints 40 m apart with a photo each: MISSION_CURRENT comes before, with, or after the photo."""
+    loaded = LoadedList(
+        Mission().pk, at(0), first, (0, 5, 5, 6, 6, 7), 2,
+        (PhotoItem(2, 5, LonLat(10.0, 55.0), 20.0), PhotoItem(4, 6, LonLat(10.0, 55.0), 60.0)),
+    )  # fmt: skip
+    for item in range(1, 6):
+        assert loaded.waypoint_of_photo(item + first, LonLat(10.00001, 55.0), 21.0) == 5
+        assert loaded.waypoint_of_photo(item + first, LonLat(10.00001, 55.0), 58.0) == 6
+    assert loaded.waypoint_of_photo(3 + first, None, None) == 6
+    assert loaded.waypoint_of_photo(None, LonLat(10.0, 55.0), 20.0) is None
+    assert replace(loaded, photos=()).waypoint_of_photo(1 + first, LonLat(10.0, 55.0), 60.0) == 5
 
 
 def test_photos_are_kept_as_long_as_other_telemetry(uav, settings):
