@@ -73,6 +73,8 @@ def _reports_of_flight() -> Iterator[tuple[float, Any]]:
         uav.step()
         for outgoing in endpoint.tick(at_s):
             message = outgoing.message
+            if outgoing.component != 1 or message.get_msgId() > 255:  # MAVLink 1 has no such message
+                continue
             has_fix = has_fix or (message.get_type() == "GPS_RAW_INT" and at_s >= FIX_AT_S)
             if message.get_type() in {"GPS_RAW_INT", "GLOBAL_POSITION_INT"} and not has_fix:
                 message.lat = message.lon = 0

@@ -6,7 +6,7 @@ import { routeLetter, routeNumber } from "../domain/palette.js";
 import { waypointName } from "../record/labels.js";
 import { capital } from "../record/sentence.js";
 import { simulatedMark } from "../simulated.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { clockText, exactClockText, exactHeightText, exactText, lengthText } from "../units.js";
 import { fold } from "./side.js";
 
@@ -143,6 +143,7 @@ function legTable(route, labels, colours, onLook) {
       h("strong", {}, route.name),
       route.is_simulated && simulatedMark(),
       h("span", { class: "count" }, route.stages.length),
+      route.photos > 0 && h("span", { class: "count" }, tn(route.photos, "{count} photo", "{count} photos")),
     ),
     h(
       "table",
