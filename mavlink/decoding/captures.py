@@ -24,6 +24,7 @@ from mavlink.frames import Message
 FRESH_S = 3.0  # of values of other messages, by receipt
 CLOCK_BOUND_S, UTC_BOUND_S, RECEIPT_BOUND_S = 1.0, 2.0, 5.0
 DAY_S = 86_400.0
+ASKED_AGAIN_S = 120.0  # longest delay of a photo that was asked for again, for its time to count
 WRAP_S = 2**32 / 1e6  # ArduPilot stamps photos with a feedback pin by 32 bits of microseconds
 GPS_BOUND_M = 2.9  # radius of 95 %, of 1.16 m per axis as the estimator has it
 RANGE_SIGMAS = 2.45  # radius of 95 % over the deviation per axis
@@ -185,6 +186,7 @@ class CaptureDecoder:
     _place: _Place | None = None
     _attitude: tuple[float, ReportedAttitude] | None = None
     _gps_m: float = GPS_BOUND_M
+    _right_clocks: set[tuple[int, TimeSource]] = field(default_factory=set)  # of components whose messages came on time
     _gimbals: dict[tuple[str, int, int], tuple[float, ReportedAttitude]] = field(default_factory=dict)
 
     def receive(self, message: Message, clock: VehicleTime, autopilot_type: AutopilotType | None, now_s: float) -> CaptureReport | None:
@@ -229,7 +231,7 @@ class CaptureDecoder:
         report = CaptureReport(
             CaptureSource.IMAGE_CAPTURED,
             _key(CaptureSource.IMAGE_CAPTURED, component, message.camera_id, message.image_index, stamp),
-            *self._time(clock, now_s, boot_s=boot_s, utc_s=utc_s, is_own=is_own),
+            *self._time(clock, now_s, boot_s=boot_s, utc_s=utc_s, component=component),
             is_taken=message.capture_result != 0,
             camera=component,
             image_index=message.image_index if message.image_index > NO_INDEX else None,
@@ -254,7 +256,7 @@ class CaptureDecoder:
             _key(CaptureSource.FEEDBACK, component, message.cam_idx, message.img_idx, message.time_usec or self._place_stamp(message)),
             *self._time(
                 clock, now_s, boot_s=None if is_utc or not time_s else _unwrapped(time_s, clock, now_s), utc_s=time_s if is_utc else 0.0,
-                is_own=component == AUTOPILOT,
+                component=component,
             ),
             image_index=message.img_idx,
             altitude_amsl_m=_height(message.alt_msl) if has_place else None,
@@ -273,29 +275,46 @@ class CaptureDecoder:
         report = CaptureReport(
             CaptureSource.TRIGGER,
             _key(CaptureSource.TRIGGER, component, 0, message.seq, message.time_usec),
-            *self._time(clock, now_s, boot_s=boot_s, utc_s=time_s if is_utc else 0.0, is_own=component == AUTOPILOT),
+            *self._time(clock, now_s, boot_s=boot_s, utc_s=time_s if is_utc else 0.0, component=component),
             image_index=message.seq if message.seq < 2**31 else None,
         )
         return self._placed(self._aimed(report, None, AttitudeSource.CAMERA, now_s), 0, 0, now_s)
 
-    def _time(self, clock: VehicleTime, now_s: float, *, boot_s: float | None, utc_s: float, is_own: bool) -> _Time:
-        """Return the server's time of a photo. is_own: of the autopilot, whose clock is known; others may have booted at another time."""
+    def _time(self, clock: VehicleTime, now_s: float, *, boot_s: float | None, utc_s: float, component: int) -> _Time:
+        """Return the server's time of a photo.
+
+        Components other than the autopilot may have booted at another time, or have no time of day: their clocks count once a message came
+        on time, then also for photos that were asked for again.
+        """
+        is_own = component == AUTOPILOT
         boot = clock.boots[-1] if clock.boots and clock.boots[-1].clock.offset_s is not None else None
         is_day = utc_s >= FIRST_DAY_S
         if is_own and boot is not None and is_day and boot.epoch_s is not None:
             boot_s = utc_s - boot.epoch_s
         if boot is not None and boot_s is not None:
             taken_s = boot.clock.measured_s(boot_s)
-            latest_s = RECEIPT_BOUND_S if is_own else UTC_BOUND_S
             is_late_like_others = is_own and now_s - boot.live_at_s > RECEIPT_BOUND_S
-            if -CLOCK_BOUND_S <= now_s - taken_s <= latest_s or (is_late_like_others and 0.0 <= now_s - taken_s <= DAY_S):
+            latest_s = DAY_S if is_late_like_others else self._latest_s(component, TimeSource.VEHICLE_CLOCK)
+            if -CLOCK_BOUND_S <= now_s - taken_s <= latest_s:
+                self._note_clock(component, TimeSource.VEHICLE_CLOCK, now_s - taken_s)
                 return _Time(min(taken_s, now_s), TimeSource.VEHICLE_CLOCK, CLOCK_BOUND_S)
             if is_own and 0.0 <= now_s - taken_s <= DAY_S:  # sent late, or another boot
                 return _Time(now_s, TimeSource.RECEIPT, now_s - taken_s)
-        if is_day and abs(now_s - utc_s) <= UTC_BOUND_S:
+        if is_day and -UTC_BOUND_S <= now_s - utc_s <= self._latest_s(component, TimeSource.UTC):
+            self._note_clock(component, TimeSource.UTC, now_s - utc_s)
             return _Time(min(utc_s, now_s), TimeSource.UTC, UTC_BOUND_S)
         off_s = now_s - utc_s if is_day and 0.0 <= now_s - utc_s <= DAY_S else 0.0
         return _Time(now_s, TimeSource.RECEIPT, max(off_s, RECEIPT_BOUND_S))
+
+    def _latest_s(self, component: int, source: TimeSource) -> float:
+        """Return how late a photo may be for its time to count."""
+        if component == AUTOPILOT and source is TimeSource.VEHICLE_CLOCK:
+            return RECEIPT_BOUND_S
+        return ASKED_AGAIN_S if (component, source) in self._right_clocks else UTC_BOUND_S
+
+    def _note_clock(self, component: int, source: TimeSource, late_s: float) -> None:
+        if late_s <= UTC_BOUND_S:
+            self._right_clocks.add((component, source))
 
     def _aimed(self, report: CaptureReport, own: ReportedAttitude | None, source: AttitudeSource, now_s: float) -> CaptureReport:
         """Return the report with the best attitude: the camera's, else the gimbal's, else the vehicle's."""

@@ -16,6 +16,7 @@ from mavlink.autopilot_type import MISSION_MODES, AutopilotType
 from mavlink.decoding.boots import Stamp, VehicleTime
 from mavlink.decoding.captures import CaptureDecoder
 from mavlink.decoding.measurement import LinkQuality
+from mavlink.decoding.missing_photos import MissingPhotos
 from mavlink.decoding.report import FlownState, MeasurementDecoder, StatusText, TextCollector, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
 from mavlink.mission_sync.flown_items import FlightWatch, FlownMissionItem
@@ -154,6 +155,7 @@ class Session:
     _collector: TextCollector = field(default_factory=TextCollector)
     _quality: LinkQuality = field(default_factory=LinkQuality)
     _photos: CaptureDecoder = field(default_factory=CaptureDecoder)
+    _missing_photos: MissingPhotos = field(default_factory=MissingPhotos)
     _flight: FlightWatch = field(default_factory=FlightWatch)
     _position_s: float = 0.0
     _greeted: dict[str, float] = field(default_factory=dict)  # time of the last heartbeat to each address
@@ -289,7 +291,8 @@ class Session:
             self._send([heartbeat.heartbeat()], now_s)
         if is_within(self.last_message_s, now_s, SENDER_SILENT_S):
             has_position = is_within(self._position_s, now_s, POSITIONS_MISSING_S)
-            self.send(self.message_requests.due(self.state, time.monotonic(), has_position=has_position), now_s)
+            due = self.message_requests.due(self.state, time.monotonic(), has_position=has_position)
+            self.send([*due, *self._missing_photos.requests(self.uav.system, time.monotonic())], now_s)
 
     # State
 
@@ -358,6 +361,7 @@ class Session:
 
     def _note_photo(self, message: Message, now_s: float) -> None:
         """Queue what a message of any component of the vehicle, such as its camera, tells of a photo."""
+        self._missing_photos.receive(message, time.monotonic())
         report = self._photos.receive(message, self.time, self.state.autopilot_type, now_s)
         if report is not None:
             self.captures.append(

@@ -18,6 +18,7 @@ from workspace.leases import lock_until_end
 
 CAPTURES_LOCK = 0x05A7_0033  # advisory lock, with the UAV
 SAME_PHOTO_S = 1.0  # between two messages of different kinds that tell of one photo
+LATE_S = 2.0  # a photo that is told later was asked for again, or held back
 SAME_RECEIPT_S = 10.0  # between receiving a message and reading it in the log of the flight
 MAX_TIME_S = 253_000_000_000.0  # year 9987, within the range of Python and PostgreSQL
 
@@ -105,11 +106,11 @@ def _begun(new: NewCapture, flies_mission: UUID | None, loaded: LoadedList | Non
     taken_at = _time(report.taken_s)
     if loaded is not None and loaded.mission_id == mission_id and taken_at >= loaded.read_at:
         flight = loaded.flight
-        position = (
-            None if report.longitude_deg is None or report.latitude_deg is None else LonLat(report.longitude_deg, report.latitude_deg)
-        )
         if waypoint is None:
-            waypoint = loaded.waypoint_of_photo(new.mission_item, position, report.altitude_relative_m)
+            lon, lat = report.longitude_deg, report.latitude_deg
+            position = None if lon is None or lat is None else LonLat(lon, lat)
+            is_late = new.received_at - taken_at > timedelta(seconds=LATE_S)
+            waypoint = loaded.waypoint_of_photo(new.mission_item, position, report.altitude_relative_m, is_late=is_late)
     return Capture.objects.create(
         uav_id=new.uav_id, mission_id=mission_id, flight=flight, waypoint_sequence=waypoint, mission_item=new.mission_item,
         received_at=new.received_at, **_columns([report]),

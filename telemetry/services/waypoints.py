@@ -64,15 +64,15 @@ class LoadedList:
         """Return the waypoint; None before the readback, as a late report may refer to another list."""
         return self.waypoint_of(item) if mission_id == self.mission_id and measured_at >= self.read_at else None
 
-    def waypoint_of_photo(self, item: int | None, position: LonLat | None, height_m: float | None) -> int | None:
+    def waypoint_of_photo(self, item: int | None, position: LonLat | None, height_m: float | None, *, is_late: bool = False) -> int | None:
         """Return the waypoint that a photo belongs to while the vehicle's list was at this item.
 
         A vehicle tells of its item once a second, and may go on to the next as it takes the photo: of the items near by that take photos
-        the nearest in space counts.
+        the nearest in space counts. is_late: told later, with the list at any item by then.
         """
         if item is None or position is None:
             return self.waypoint_of(item)
-        near = [one for one in self.photos if abs(one.number - (item - self.first)) <= NEAR_ITEMS]
+        near = [one for one in self.photos if is_late or abs(one.number - (item - self.first)) <= NEAR_ITEMS]
         nearest = min(near, key=lambda one: (one.away2(position, height_m), one.number), default=None)
         return self.waypoint_of(item) if nearest is None else nearest.waypoint
 

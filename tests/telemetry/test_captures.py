@@ -140,6 +140,9 @@ def test_photo_belongs_to_the_waypoint_that_it_was_taken_at_wherever_the_list_is
         assert loaded.waypoint_of_photo(item + first, LonLat(10.00001, 55.0), 21.0) == 5
         assert loaded.waypoint_of_photo(item + first, LonLat(10.00001, 55.0), 58.0) == 6
     assert loaded.waypoint_of_photo(3 + first, None, None) == 6
+    far = replace(loaded, waypoints=(*loaded.waypoints, *[9] * 20))
+    assert far.waypoint_of_photo(24 + first, LonLat(10.0, 55.0), 20.0) == 9
+    assert far.waypoint_of_photo(24 + first, LonLat(10.0, 55.0), 20.0, is_late=True) == 5, "asked for again"
     assert loaded.waypoint_of_photo(None, LonLat(10.0, 55.0), 20.0) is None
     assert replace(loaded, photos=()).waypoint_of_photo(1 + first, LonLat(10.0, 55.0), 60.0) == 5
 

@@ -11,6 +11,7 @@ from mavlink.autopilot_type import AutopilotType
 from mavlink.decoding.boots import VehicleTime
 from mavlink.decoding.captures import AttitudeSource, CaptureDecoder, CaptureReport, PositionSource, TimeSource, combined
 from mavlink.decoding.gimbal_attitude import YawFrame, attitude_of_quaternion
+from mavlink.decoding.missing_photos import MissingPhotos
 from tests.mavlink.decoding.photos import (
     BOOTED_S,
     CAMERA,
@@ -129,6 +130,42 @@ def test_time_of_a_feedback_pin_is_read_beyond_its_32_bits():
         clock.receive(step * 1_000, NOW_S - 5_100 + step)
     report = decoded(feedback(time_us=(5_099.0 * 1e6) % 2**32), clock=clock)
     assert (report.time_source, report.taken_s) == (TimeSource.VEHICLE_CLOCK, pytest.approx(NOW_S - 1.0, abs=0.1))
+
+
+def test_a_cameras_photo_that_was_asked_for_again_has_its_time_once_the_camera_was_on_time():
+    for utc_s, source in ((0.0, TimeSource.VEHICLE_CLOCK), (NOW_S, TimeSource.UTC)):
+        decoder, clock, boot_s = CaptureDecoder(), synchronised(), 100.0 if not utc_s else 9_000.0
+        again = captured(3, boot_s=boot_s, utc_s=utc_s)
+        unknown = decoder.receive(again, clock, PX4, NOW_S + 20.0)
+        assert unknown is not None and (unknown.time_source, unknown.taken_s) == (TimeSource.RECEIPT, NOW_S + 20.0)
+        on_time = captured(4, boot_s=boot_s + 20.0, utc_s=utc_s and utc_s + 20.0)
+        assert decoder.receive(on_time, clock, PX4, NOW_S + 20.2).time_source is source
+        late = decoder.receive(again, clock, PX4, NOW_S + 30.0)
+        assert (late.time_source, late.taken_s) == (source, pytest.approx(NOW_S, abs=0.3))
+
+
+def test_gaps_of_indices_are_asked_for_and_a_camera_that_counts_anew_is_not():
+    missing = MissingPhotos()
+
+    def asked(now_s):
+        return [(message.target_component, message.param1, message.param2) for message in missing.requests(7, now_s)]
+
+    for index in (5, 6, 9):
+        missing.receive(captured(index), 0.0)
+    assert asked(1.0) == [], "they may be out of order"
+    assert asked(2.0) == [(CAMERA, 263.0, 7.0), (CAMERA, 263.0, 8.0)]
+    missing.receive(captured(7), 3.0)
+    assert asked(3.0) == [] and asked(6.0) == [(CAMERA, 263.0, 8.0)]
+    missing.receive(captured(10), 7.0)
+    assert [bool(asked(float(second))) for second in range(20, 200)].count(True) == 2, "then it is given up"
+    missing.receive(captured(0), 300.0)
+    missing.receive(captured(2), 301.0)
+    assert asked(310.0) == [(CAMERA, 263.0, 1.0)]
+    missing.receive(captured(900), 311.0)
+    assert asked(320.0) == []
+    for index in (1, 5):
+        missing.receive(captured(index, component=1), 330.0)
+    assert asked(340.0) == [], "an autopilot keeps none"
 
 
 def test_photos_that_were_held_back_with_all_else_keep_their_time():

@@ -78,3 +78,22 @@ def test_photos_arrive_within_half_a_metre_and_one_degree(autopilot_type, gimbal
         assert (photo.attitude_source, photo.yaw_frame, photo.position_source, photo.is_taken) == ("camera", "earth", "photo", True)
         assert photo.time_source in ("vehicle-clock", "utc") and photo.camera == 100
         assert abs((photo.taken_at - photo.received_at).total_seconds()) < 2.0
+
+
+def test_photo_whose_message_is_lost_is_asked_for_again(tmp_path, settings):
+    settings.FLIGHT_LOG_DIR = tmp_path
+    uav, key = signed_uav(SYSTEM, a_user())
+    port = free_port()
+    launch = Launch(SYSTEM, HOME, airframe="inspector", key=key, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
+    with gateway_program(port, tmp_path), flying([launch], speed=SPEED) as fleet:
+        camera = fleet.uavs[0].endpoint.camera
+        tell = camera.photo
+        camera.photo = lambda event, report: [] if event.number == 2 and tell(event, report) else tell(event, report)  # type: ignore[method-assign]
+        wait_for(lambda: fleet.uavs[0].received_count, "the gateway")
+        begin(fleet)
+        wait_for(lambda: Capture.objects.filter(uav=uav).count() >= len(STANDS), "the photos", patience_s=60.0)
+    photos = list(Capture.objects.filter(uav=uav).order_by("taken_at"))
+    assert [photo.image_index for photo in photos] == [0, 1, 2, 3], "also in the order in which they were taken"
+    again = photos[1]
+    assert off_m(LonLat(again.position.x, again.position.y), place(*STANDS[1][:2])) < 0.5
+    assert (again.received_at - again.taken_at).total_seconds() > 1.0 and again.time_source != "receipt"

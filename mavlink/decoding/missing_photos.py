@@ -1,0 +1,64 @@
+"""Photos whose message was lost: the gaps in a camera's image indices, and the requests for them.
+
+A camera sends CAMERA_IMAGE_CAPTURED again for MAV_CMD_REQUEST_MESSAGE with the index as parameter 2 (MAVLink, camera protocol).
+"""
+
+from dataclasses import dataclass, field
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mavlink.addressing import AUTOPILOT
+from mavlink.frames import Message
+
+MAX_GAP = 100  # indices; a larger step is a camera that counts anew
+MAX_MISSING = 200
+MAX_REQUESTS = 4  # of one photo
+RETRY_DELAY_S = 2.0  # doubled with each request
+MAX_AT_ONCE = 5
+
+
+@dataclass
+class _Missing:
+    due_s: float
+    requests: int = 0
+
+
+@dataclass
+class MissingPhotos:
+    """The lost photos of one vehicle's cameras. Autopilots keep none of theirs. Times are monotonic seconds."""
+
+    _next: dict[int, int] = field(default_factory=dict)  # index by component
+    _missing: dict[tuple[int, int], _Missing] = field(default_factory=dict)
+
+    def receive(self, message: Message, now_s: float) -> None:
+        component = message.get_srcComponent()
+        if message.get_type() != "CAMERA_IMAGE_CAPTURED" or component == AUTOPILOT or message.image_index < 0:
+            return
+        index, expected = message.image_index, self._next.get(component)
+        if self._missing.pop((component, index), None) is not None:
+            return
+        self._next[component] = index + 1
+        if expected is None:
+            return
+        if not 0 <= index - expected <= MAX_GAP:  # it counts anew
+            self._missing = {which: one for which, one in self._missing.items() if which[0] != component}
+            return
+        for lost in range(expected, index):
+            if len(self._missing) < MAX_MISSING:
+                self._missing[component, lost] = _Missing(now_s + RETRY_DELAY_S)  # it may be out of order
+
+    def requests(self, system: int, now_s: float) -> list[Message]:
+        """Return the requests that are due."""
+        due = [(which, one) for which, one in self._missing.items() if one.due_s <= now_s][:MAX_AT_ONCE]
+        for which, one in due:
+            one.requests += 1
+            one.due_s = now_s + RETRY_DELAY_S * 2.0**one.requests
+            if one.requests >= MAX_REQUESTS:
+                del self._missing[which]
+        captured = float(mavlink.MAVLINK_MSG_ID_CAMERA_IMAGE_CAPTURED)
+        return [
+            mavlink.MAVLink_command_long_message(
+                system, component, mavlink.MAV_CMD_REQUEST_MESSAGE, 0, captured, float(index), 0.0, 0.0, 0.0, 0.0, 0.0
+            )
+            for (component, index), _ in due
+        ]
