@@ -10,10 +10,14 @@ class Refused(Exception):
 
 @dataclass(frozen=True)
 class Events:
-    """What has happened since it was asked last: places of targets with their outcome, and how the flight ended (None: it has not)."""
+    """What has happened since it was asked last: places of targets with their outcome, and how the flight ended (None: it has not).
+
+    photos: each when it was taken [s since 1970], and a capture of the link without its number and time.
+    """
 
     targets: list[tuple[int, str, str]] = field(default_factory=list)  # place, complete or skipped or failed, a note
     flight_ended: str | None = None  # flown or failed
+    photos: list[tuple[float, dict[str, Any]]] = field(default_factory=list)
 
 
 class Autopilot(Protocol):

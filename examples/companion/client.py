@@ -15,7 +15,7 @@ from examples.companion.content import content_sha256
 from examples.companion.journal import DONE, OPEN, UNDER_WAY, Journal
 from examples.companion.link import Answer, Link, LinkDown
 
-RECORDS_AT_ONCE, RESULTS_AT_ONCE, ACKNOWLEDGEMENTS_AT_ONCE = 500, 20, 50
+RECORDS_AT_ONCE, RESULTS_AT_ONCE, ACKNOWLEDGEMENTS_AT_ONCE, CAPTURES_AT_ONCE = 500, 20, 50, 100
 TIMEOUT_S = 60.0  # after which a command that is not seen to be done has failed
 SETS_IN_MOTION = {"arm", "take-off", "start", "resume"}
 LATER = {408, 425, 429}  # try again; 5xx likewise
@@ -124,6 +124,8 @@ class Companion:
 
     def _note_events(self, now_s: float) -> None:
         events = self._autopilot.events(now_s)
+        for taken_s, photo in events.photos:
+            self._journal.add_capture({"taken_at": _time(taken_s), **photo})
         flies = self._journal.kept("flies")
         if flies is None:
             return
@@ -136,7 +138,7 @@ class Companion:
 
     def _send_all(self, now_s: float) -> bool:
         """Whether the link is still there; what is short and urgent goes first."""
-        return self._send_acknowledgements(now_s) and self._send_records(now_s) and self._send_results(now_s)
+        return self._send_acknowledgements(now_s) and self._send_records(now_s) and self._send_results(now_s) and self._send_photos(now_s)
 
     def _send_acknowledgements(self, now_s: float) -> bool:
         while waiting := self._journal.waiting("acknowledgements", ACKNOWLEDGEMENTS_AT_ONCE):
@@ -154,6 +156,15 @@ class Companion:
             if answer is None or answer.status != 200:
                 return False
             self._settle("records", [number for number, _ in waiting], answer)
+        return True
+
+    def _send_photos(self, now_s: float) -> bool:
+        while waiting := self._journal.waiting("captures", CAPTURES_AT_ONCE):
+            captures = [{"sequence": number, **capture} for number, capture in waiting]
+            answer = self._ask(now_s, "POST", "captures", {"stream": self._journal.stream, "captures": captures})
+            if answer is None or answer.status != 200:
+                return False
+            self._settle("captures", [number for number, _ in waiting], answer)
         return True
 
     def _send_results(self, now_s: float) -> bool:

@@ -12,12 +12,13 @@ TABLES = """
 CREATE TABLE IF NOT EXISTS facts (name TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS records (sequence INTEGER PRIMARY KEY AUTOINCREMENT, body TEXT NOT NULL, refused TEXT);
 CREATE TABLE IF NOT EXISTS results (sequence INTEGER PRIMARY KEY AUTOINCREMENT, body TEXT NOT NULL, refused TEXT);
+CREATE TABLE IF NOT EXISTS captures (sequence INTEGER PRIMARY KEY AUTOINCREMENT, body TEXT NOT NULL, refused TEXT);
 CREATE TABLE IF NOT EXISTS flights (number INTEGER PRIMARY KEY AUTOINCREMENT, body TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS acknowledgements (number INTEGER PRIMARY KEY AUTOINCREMENT, body TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS commands (id TEXT PRIMARY KEY, body TEXT NOT NULL, state TEXT NOT NULL);
 """
 OPEN, UNDER_WAY, DONE = "open", "under way", "done"
-COUNTED = ("records", "results")  # tables whose numbers the server knows
+COUNTED = ("records", "results", "captures")  # tables whose numbers the server knows
 
 
 class Journal:
@@ -44,6 +45,9 @@ class Journal:
 
     def add_result(self, result: dict[str, Any]) -> int:
         return self._add("results", result)
+
+    def add_capture(self, capture: dict[str, Any]) -> int:
+        return self._add("captures", capture)
 
     def add_flight(self, flight: dict[str, Any]) -> int:
         return self._add("flights", flight)

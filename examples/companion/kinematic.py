@@ -35,6 +35,8 @@ class KinematicAutopilot:
         self._flown_s = 0.0
         self._targets: list[tuple[int, str, str]] = []
         self._ended: str | None = None
+        self._photos: list[tuple[float, dict[str, Any]]] = []
+        self._images = 0
 
     # --- what it is told ---
 
@@ -102,8 +104,8 @@ class KinematicAutopilot:
 
     def events(self, now_s: float) -> Events:
         self._advance(now_s)
-        events = Events(self._targets, self._ended)
-        self._targets, self._ended = [], None
+        events = Events(self._targets, self._ended, self._photos)
+        self._targets, self._ended, self._photos = [], None, []
         return events
 
     @property
@@ -158,6 +160,8 @@ class KinematicAutopilot:
             if at_s < self._hover_until_s:
                 return
             self._hover_until_s = None
+            if flight["waypoints"][self.next]["task"]["kind"] == "photo":
+                self._take_photo(at_s)
             self._pass(flight)
         elif self.next < len(flight["waypoints"]):
             waypoint = flight["waypoints"][self.next]
@@ -178,6 +182,18 @@ class KinematicAutopilot:
         later = {waypoint["target"] for waypoint in flight["waypoints"][self.next :]}
         if place is not None and place not in later:
             self._targets.append((place, "complete", "seen"))
+
+    def _take_photo(self, at_s: float) -> None:
+        """Its camera looks straight down."""
+        photo = {
+            "position": [round(self.place[0], 8), round(self.place[1], 8)],
+            "altitude_relative_m": round(self.height_m, 2),
+            "pitch_deg": -90.0,
+            "image_index": self._images,
+            "waypoint_sequence": self._flies_to,
+        }
+        self._images += 1
+        self._photos.append((at_s, photo))
 
     @property
     def _cruise_mps(self) -> float:

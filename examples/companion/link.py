@@ -27,7 +27,7 @@ class Answer:
 
 class Link(Protocol):
     def ask(self, method: str, what: str, body: Any = None, headers: dict[str, str] | None = None) -> Answer:
-        """`what` is route, telemetry, acknowledgements or results. Raises LinkDown."""
+        """`what` is route, telemetry, acknowledgements, results or captures. Raises LinkDown."""
 
 
 class HttpLink:

@@ -15,8 +15,10 @@ from examples.companion.journal import Journal
 from examples.companion.kinematic import KinematicAutopilot
 from examples.companion.link import Answer, HttpLink, LinkDown
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, UavCommand
+from missions.services import TargetRequest
 from missions.services.commands.dispatch import abort_mission
-from telemetry.models import InspectionResult, TelemetryRecord, UavLink
+from planning.problem import Task, TaskKind
+from telemetry.models import Capture, InspectionResult, TelemetryRecord, UavLink
 from telemetry.views.uav_authentication import UavRate
 from tests.missions.flights import an_operator, dispatched
 from tests.missions.worlds import UAV_AT, World, world
@@ -64,6 +66,25 @@ def test_a_whole_mission_is_flown_over_the_link(flight: Flight) -> None:
     assert not any(row.is_from_future or row.is_late for row in rows)
     polls = [at_s for at_s, what, _ in flight.link.asked if what == "route"]
     assert {later - before for before, later in pairwise(polls)} == {5.0}
+
+
+def test_photos_are_reported_once_also_after_a_lost_link(
+    here: World, kite: UavClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(UavRate, "THROTTLE_RATES", {"uav-link": None})
+    photo = Task(TaskKind.PHOTO, 4.0)
+    dispatched(an_operator(), [kite.uav], [TargetRequest(here.towers[2].pk, task=photo), TargetRequest(here.towers[5].pk, task=photo)])
+    flight = Flight(kite, tmp_path)
+    flight.take_off()
+    flight.fly_until(lambda: flight.journal.added("captures") == 1)
+    until_s = flight.now_s + 30.0
+    flight.link.loses_answers = lambda now_s: now_s < until_s
+    flight.fly_until(lambda: not flight.autopilot.is_in_air)
+    flight.fly(20)
+    rows = list(Capture.objects.order_by("taken_at"))
+    assert [(row.image_index, row.pitch_deg, row.is_taken) for row in rows] == [(0, -90.0, True), (1, -90.0, True)]
+    assert {row.mission_id for row in rows} == {mission_now().pk} and len({row.waypoint_sequence for row in rows}) == 2
+    assert flight.journal.waiting("captures", 10) == flight.journal.refused("captures") == []
 
 
 @pytest.mark.parametrize("down_s", [5, 60, pytest.param(600, marks=pytest.mark.long)])
