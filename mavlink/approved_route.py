@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from inspection.geodesy import LonLat
-from planning.problem import Task, TaskKind
+from planning.task import Task, task_from_json, task_to_json
 from planning.trajectory.waypoints import WaypointKind
 
 RETURN, LAND, HOVER, BASE = "return", "land", "hover", "base"
@@ -163,7 +163,7 @@ def _waypoint_to_json(waypoint: FrozenWaypoint) -> dict[str, Any]:
         "altitude_agl_m": waypoint.altitude_agl_m,
         "altitude_amsl_m": waypoint.altitude_amsl_m,
         "altitude_relative_m": waypoint.altitude_relative_m,
-        "task": None if task is None else {"kind": task.kind.value, "hold_s": task.hold_s},
+        "task": None if task is None else task_to_json(task),
         "target": waypoint.target,
         "speed_mps": waypoint.speed_mps,
         "arrival_s": waypoint.arrival_s,
@@ -171,7 +171,6 @@ def _waypoint_to_json(waypoint: FrozenWaypoint) -> dict[str, Any]:
 
 
 def _waypoint_from_json(stored: Mapping[str, Any]) -> FrozenWaypoint:
-    task = stored["task"]
     return FrozenWaypoint(
         sequence=stored["sequence"],
         position=LonLat(*stored["position"]),
@@ -179,7 +178,7 @@ def _waypoint_from_json(stored: Mapping[str, Any]) -> FrozenWaypoint:
         altitude_agl_m=stored["altitude_agl_m"],
         altitude_relative_m=stored["altitude_relative_m"],
         altitude_amsl_m=stored["altitude_amsl_m"],
-        task=None if task is None else Task(TaskKind(task["kind"]), task["hold_s"]),
+        task=task_from_json(stored["task"]),
         target=stored["target"],
         speed_mps=stored["speed_mps"],
         arrival_s=stored["arrival_s"],

@@ -3,18 +3,23 @@
 The items use only what both autopilots store. ArduPilot truncates a waypoint's hold to whole seconds, so it is rounded up, and an altitude
 to centimetres, so it is sent in centimetres. It discards a waypoint's radius and yaw, so they are left to the autopilot. Items without a
 position use the frame MISSION, the only one that PX4 accepts for them.
+
+Photos with a view are aimed by a region of interest, before the waypoint so that the UAV turns on its way. None looks straight down (see
+planning/views/detail_views.py): the bearing of a place under the UAV is noise, and the nose of one without a panning gimbal follows it.
 """
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import HOVER, Flight, FrozenRoute, FrozenWaypoint
 from mavlink.vehicle_plan import FlightLoad, MissionItem
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind, View
 
 RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
 NO_PLACE = mavlink.MAV_FRAME_MISSION
@@ -79,13 +84,19 @@ def _items(flight: Flight, route: FrozenRoute, rules: ItemRules) -> Iterator[Mis
         raise CannotBeFlown("take-off-height", "The route's first waypoint is not above its take-off.")
     if route.begun_by is None:
         yield _at(mavlink.MAV_CMD_NAV_TAKEOFF, first, (0.0, 0.0, 0.0, math.nan))
-    flown_mps = 0.0
+    flown_mps, photos = 0.0, 0
     for place, waypoint in enumerate(flight.waypoints):
         wanted_mps = route.cruise_speed_mps if waypoint.speed_mps is None else waypoint.speed_mps
         if waypoint.sequence <= begun_by + 1 or abs(wanted_mps - flown_mps) > rules.speed_step_mps:
             yield _plain(mavlink.MAV_CMD_DO_CHANGE_SPEED, (GROUND_SPEED, wanted_mps, NO_THROTTLE, 0.0), waypoint)
             flown_mps = wanted_mps
         follows = flight.waypoints[place + 1] if place + 1 < len(flight.waypoints) else None
+        if waypoint.task is not None and waypoint.task.view is not None:
+            photos += 1
+            yield from _aimed_photo(waypoint, waypoint.task, waypoint.task.view, photos, rules)
+            if follows is None or not _is_photographed(flight, waypoint.target, place + 1):
+                yield _plain(mavlink.MAV_CMD_DO_SET_ROI_NONE, (0.0, 0.0, 0.0, 0.0), waypoint)
+            continue
         yield from _waypoint(waypoint, waypoint.task, is_stretch=_same_target(waypoint, follows), rules=rules)
     if flight.end_action != HOVER:
         yield _item(mavlink.MAV_CMD_NAV_LAND, last, (0.0, 0.0, 0.0, math.nan), last.ground_relative_m)
@@ -108,6 +119,31 @@ def _waypoint(waypoint: FrozenWaypoint, task: Task | None, *, is_stretch: bool, 
         yield _plain(mavlink.MAV_CMD_DO_SET_ROI_NONE, (0.0, 0.0, 0.0, 0.0), waypoint)
     else:  # hovering, or a stretch: there the camera points along the flight direction
         yield _hold_at(waypoint, task.hold_s)
+
+
+def _aimed_photo(waypoint: FrozenWaypoint, task: Task, view: View, number: int, rules: ItemRules) -> Iterator[MissionItem]:
+    """One photo; `number` counts those of the flight from 1, so that a repeated item takes no second one."""
+    settle_s = min(rules.settle_s, task.hold_s)
+    place, height_m = aim_point(waypoint, view)
+    yield _item(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, replace(waypoint, position=place), (0.0, 0.0, 0.0, 0.0), height_m)
+    yield _hold_at(waypoint, settle_s)
+    yield _plain(mavlink.MAV_CMD_IMAGE_START_CAPTURE, (0.0, 0.0, 1.0, float(number)), waypoint)
+    rest_s = max(float(math.ceil(task.hold_s - settle_s)), 1.0)  # the photo is taken before the UAV sets out
+    yield _plain(mavlink.MAV_CMD_NAV_DELAY, (rest_s, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK), waypoint)
+
+
+def aim_point(waypoint: FrozenWaypoint, view: View) -> tuple[LonLat, float]:
+    """Return where a photo's optical axis meets what it shows, and the height of that above the take-off [m]."""
+    yaw, pitch = math.radians(view.yaw_deg), math.radians(view.pitch_deg)
+    across_m = view.distance_m * math.cos(pitch)
+    frame = LocalFrame.around(*waypoint.position)
+    lon, lat = frame.to_degrees(np.array([[across_m * math.sin(yaw), across_m * math.cos(yaw)]]))[0].tolist()
+    return LonLat(lon, lat), waypoint.altitude_relative_m + view.distance_m * math.sin(pitch)
+
+
+def _is_photographed(flight: Flight, target: int | None, begin: int) -> bool:
+    """Whether a later waypoint, from this place on, has a photo of the same target."""
+    return any(own.target == target and own.task is not None and own.task.view is not None for own in flight.waypoints[begin:])
 
 
 def _same_target(waypoint: FrozenWaypoint, follows: FrozenWaypoint | None) -> bool:

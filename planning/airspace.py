@@ -165,10 +165,10 @@ def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> NamedZo
     return named_zone(*found) if found else _margin(airspace)
 
 
-def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> NamedZone | None:
-    """Return the first zone that a stretch meets at the heights of its inspection and of the flight to it."""
+def zone_along(course: Sequence[LonLat], agl_m: tuple[float, float], airspace: Airspace) -> NamedZone | None:
+    """Return the first zone that a course meets at the heights, from and to, of its inspection and of the flight to it."""
     line = np.array(course)
-    low_m, high_m = column_m(agl_m, airspace)
+    low_m, high_m = column_m(agl_m[0], airspace)[0], column_m(agl_m[1], airspace)[1]
     met = np.flatnonzero(airspace.zones.meets(line[:-1], line[1:], airspace.access.zone_clearance_m, low_m, high_m))
     if not len(met):
         return None

@@ -12,11 +12,13 @@ from inspection.terrain.profile import profile_under
 from inspection.terrain.tiled_terrain import TiledTerrain
 from inspection.zones.reach import BoolArray, ZoneTable
 from inspection.zones.schedule import ZoneRules
+from operation.reasons import Reason
 from planning.clearance.zone_clearance import Margins
-from planning.problem import Task
 from planning.rules import FlightRules, RoutingRules, SeparationRules
 from planning.separation.separation import TimedRoute
+from planning.task import Task
 from planning.trajectory.heights import FloatArray, GroundHeights, GroundModel
+from planning.views.photo_flight import PhotoFlight
 
 Box = tuple[float, float, float, float]
 
@@ -49,7 +51,8 @@ class PlanningRules:
 class ResolvedTarget:
     """A target of the request on the ground; `target` is its place in the request.
 
-    `course` has one position for a point and the vertices in the line's direction for a stretch.
+    `course` has one position for a point and the vertices in the line's direction for a stretch. photos: the flight through the photos of
+    a task with views; no_photos: why there is none.
     """
 
     target: int
@@ -58,6 +61,13 @@ class ResolvedTarget:
     height_m: float
     asset: int | None = None
     kind: str | None = None
+    photos: PhotoFlight | None = None
+    no_photos: Reason | None = None
+
+    @property
+    def stays_s(self) -> float:
+        """How long a UAV is at the target, flown along a stretch not counted."""
+        return self.task.hold_s if self.photos is None else self.photos.seconds
 
     @property
     def is_stretch(self) -> bool:

@@ -20,12 +20,15 @@ from inspection.terrain.heights import HeightGrid
 from inspection.terrain.tiled_terrain import IntArray, TiledTerrain
 from inspection.zones.reach import BoolArray, HeightLimits, ZoneTable
 from inspection.zones.schedule import ZoneRules
+from operation.reasons import reason_from_json
 from planning.airspace import box_near
 from planning.context import OtherFlights, PlanningContext, PlanningRules, ResolvedTarget, Terrain
-from planning.request import PlanRequest, request_from_json, request_to_json, task_from_json, task_to_json
+from planning.request import PlanRequest, request_from_json, request_to_json
 from planning.rules import FlightRules, Manoeuvres, RoutingRules, SeparationRules
 from planning.separation.separation import TimedRoute
+from planning.task import task_from_json, task_to_json
 from planning.trajectory.heights import FloatArray
+from planning.views.photo_flight import PhotoFlight
 
 LAYOUT = 1
 ABOUT, NETWORK, ZONES, TERRAIN = "context.json", "network.npz", "zones.npz", "terrain.npz"
@@ -154,6 +157,8 @@ def _target_to_json(target: ResolvedTarget) -> dict[str, Any]:
         "height_m": target.height_m,
         "asset": target.asset,
         "kind": target.kind,
+        "photos": None if target.photos is None else target.photos.to_json(),
+        "no_photos": None if target.no_photos is None else target.no_photos.to_json(),
     }
 
 
@@ -161,7 +166,14 @@ def _target_from_json(value: dict[str, Any]) -> ResolvedTarget:
     task = task_from_json(value["task"])
     if task is None:
         raise ValueError("a target has no task")
-    return ResolvedTarget(**{**value, "course": tuple(LonLat(*at) for at in value["course"]), "task": task})
+    photos, no_photos = value.get("photos"), value.get("no_photos")
+    read = {
+        "course": tuple(LonLat(*at) for at in value["course"]),
+        "task": task,
+        "photos": None if photos is None else PhotoFlight.from_json(photos),
+        "no_photos": None if no_photos is None else reason_from_json(no_photos),
+    }
+    return ResolvedTarget(**{**value, **read})
 
 
 def _flights_to_json(flights: OtherFlights) -> dict[str, Any]:

@@ -12,8 +12,9 @@ from operation.reasons import Reason
 from planning.energy.charging import ChargingStop
 from planning.energy.conditions import conditions_to_json
 from planning.plan import ALL_PLANS, Plan, PlannedRoute, PlanWarning, Shortfall
-from planning.request import lock_to_json, moment_to_json, task_to_json
+from planning.request import lock_to_json, moment_to_json
 from planning.separation.report import separation_json
+from planning.task import task_to_json
 from planning.trajectory.heights import FloatArray
 from planning.trajectory.waypoints import KINDS, NONE, PASS, IntArray, Waypoints
 

@@ -1,4 +1,4 @@
-"""A planning problem in plain values: tasks, UAVs, visits, and the metres between them."""
+"""A planning problem in plain values: UAVs, visits, and the metres between them."""
 
 import math
 from collections.abc import Sequence
@@ -16,46 +16,8 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
-MAX_HOLD_S = 3_600.0
 # Legs are measured on the ellipsoid, a route's line is straight in lon/lat: on a leg of 10 km they differ by less than this share.
 RANGE_RESERVE = 1e-6
-
-
-class TaskKind(StrEnum):
-    LOOK = "look"  # slow down and film the asset in passing
-    PHOTO = "photo"  # stand still for sharp pictures
-    HOLD = "hold"  # hover over the place
-
-
-# Seconds at the target when the operator names the kind of task alone: a look in passing, one round of pictures, a longer hover.
-DEFAULT_HOLD_S = {TaskKind.LOOK: 5.0, TaskKind.PHOTO: 10.0, TaskKind.HOLD: 30.0}
-
-
-@dataclass(frozen=True)
-class Task:
-    """What is done at a target; the UAV stays `hold_s` seconds."""
-
-    kind: TaskKind
-    hold_s: float
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.hold_s <= MAX_HOLD_S:
-            raise ValueError(f"hold_s must be from 0 to {MAX_HOLD_S:.0f}")
-
-
-def default_task(asset_kind: str | None, *, is_path: bool) -> Task:
-    """The task of a target for which the operator names none.
-
-    Towers and bridges have details to photograph; a line or railway flown end to end is filmed without stopping, a single point on it
-    is looked at; over a bare position the UAV hovers.
-    """
-    if is_path:
-        return Task(TaskKind.LOOK, 0.0)
-    if asset_kind in {"tower", "bridge"}:
-        return Task(TaskKind.PHOTO, DEFAULT_HOLD_S[TaskKind.PHOTO])
-    if asset_kind is None:
-        return Task(TaskKind.HOLD, 10.0)
-    return Task(TaskKind.LOOK, DEFAULT_HOLD_S[TaskKind.LOOK])
 
 
 class Objective(StrEnum):

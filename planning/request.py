@@ -11,7 +11,8 @@ from operation.reasons import Reason
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
 from planning.energy.performance import Performance, performance_from_json, performance_to_json
-from planning.problem import End, Objective, Priority, Task, TaskKind
+from planning.problem import End, Objective, Priority
+from planning.task import Task, task_from_json, task_to_json
 
 
 class EndAction(StrEnum):
@@ -137,14 +138,6 @@ class InvalidRequest(Exception):
     def __init__(self, faults: Mapping[str, Reason | str]) -> None:
         super().__init__("; ".join(f"{place}: {fault}" for place, fault in faults.items()))
         self.faults = dict(faults)
-
-
-def task_to_json(task: Task) -> dict[str, Any]:
-    return {"kind": task.kind.value, "hold_s": task.hold_s}
-
-
-def task_from_json(value: dict[str, Any] | None) -> Task | None:
-    return Task(TaskKind(value["kind"]), float(value["hold_s"])) if value else None
 
 
 def priority_to_json(priority: Priority) -> str:

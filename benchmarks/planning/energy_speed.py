@@ -34,10 +34,11 @@ from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass, graph_taken
 from planning.energy.performance import Performance
 from planning.file_plans import FileGraph, plan_json, read_graph, read_mission
-from planning.problem import End, Objective, Problem, Resources, Routes, Task, TaskKind, UavStart, Visit
+from planning.problem import End, Objective, Problem, Resources, Routes, UavStart, Visit
 from planning.rules import FlightRules
 from planning.solver.exact import best_routes
 from planning.solver.problem_arrays import Arcs
+from planning.task import Task, TaskKind
 from planning.trajectory.heights import pass_agl_m, with_heights
 from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from planning.trajectory.timing import timing

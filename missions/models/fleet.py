@@ -193,7 +193,9 @@ class Uav(models.Model):
 
     @property
     def sensors(self) -> list[str]:
-        return list(dict.fromkeys([*filter(None, [self.sensor]), *(self.uav_type.sensors if self.uav_type else [])]))
+        """Its own, its type's, and the names of its type's cameras."""
+        of_type = [*self.uav_type.sensors, *(camera["name"] for camera in self.uav_type.cameras)] if self.uav_type else []
+        return list(dict.fromkeys([*filter(None, [self.sensor]), *of_type]))
 
 
 class CredentialKind(models.TextChoices):

@@ -16,6 +16,7 @@ from missions.hooks.in_air import uavs_in_the_air
 from missions.models import UavState
 from missions.selectors.fleet import bases_of_organisation, states_out_of_service
 from missions.selectors.flights import flights_at_the_same_time
+from missions.selectors.photo_flights import OnPhotos, with_photo_flights
 from missions.selectors.planning_rules import planning_rules
 from missions.selectors.resolved_targets import NamedTarget, resolved_targets, whole_assets
 from planning.airspace import Airspace, airspace_on, zone_choice
@@ -25,11 +26,21 @@ from planning.trajectory.heights import GroundModel
 from workspace.models import Organisation
 
 
-def read_targets(request: PlanRequest) -> tuple[PlanningGround, list[NamedTarget], list[int]]:
-    """Return the current map data, the targets on it, and the targets whose asset has been deleted. Raises InvalidRequest."""
+def _says_nothing(planned: int, asked: int) -> None:
+    pass
+
+
+def read_targets(
+    request: PlanRequest, on_photos: OnPhotos = _says_nothing
+) -> tuple[PlanningGround, list[NamedTarget], list[int]]:  # fmt: skip
+    """Return the current map data, the targets on it, and the targets whose asset has been deleted. Raises InvalidRequest.
+
+    Photos that are not planned yet are planned, which takes seconds for each target: on_photos is called before each.
+    """
     read = planning_read(whole_assets(request.targets))
     targets, deleted = resolved_targets(request.targets, read.points)
-    return read.ground(), targets, deleted
+    ground = read.ground()
+    return ground, with_photo_flights(targets, ground.dataset_version, on_photos), deleted
 
 
 def terrain_under(dataset_version: DatasetVersion) -> GroundModel | None:

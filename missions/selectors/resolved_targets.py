@@ -15,8 +15,8 @@ from inspection.selectors import asset_label
 from inspection.selectors.planning import PointAsset, planning_read
 from operation.reasons import Reason
 from planning.context import ResolvedTarget
-from planning.problem import Task, default_task
 from planning.request import InvalidRequest, TargetRequest
+from planning.task import Task, default_task
 from planning.trajectory.heights import FloatArray, asset_height_m
 from planning.trajectory.stretches import PlaceOnLine, nearest_on_line, stretch_between
 from workspace.locale_negotiation import number_text

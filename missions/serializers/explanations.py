@@ -61,7 +61,7 @@ class TargetExplanationSerializer(serializers.Serializer):
     reason = serializers.ChoiceField(
         choices=[
             "asset_gone", "inside_zone", "above_height_limit", "too_far_from_network", "no_path", "beyond_range", "not_with_the_others",
-            "not_allowed", "beyond_energy", "wind", "most_targets",
+            "not_allowed", "beyond_energy", "wind", "most_targets", "no_photos",
         ]
     )  # fmt: skip
     message = serializers.CharField(allow_blank=True, help_text="as a plan of this target alone tells it; empty where the figures do")

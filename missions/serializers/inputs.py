@@ -32,6 +32,7 @@ from missions.serializers.limits import (
     MIN_CHARGING_W,
 )
 from missions.serializers.performance import fault_words
+from missions.serializers.view_plans import ViewsInputSerializer, views_request
 from missions.services import (
     CALM,
     InvalidRequest,
@@ -55,9 +56,9 @@ from planning.energy.performance import (
     InvalidPerformance,
     performance_from_json,
 )
-from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from planning.problem import Objective as RoutingObjective
 from planning.request import GO_ON, EndAction, LostLinkRequest, lost_link_from_json
+from planning.task import DEFAULT_HOLD_S, MAX_HOLD_S, VIEWS_HOLD_S, Task, TaskKind
 from workspace.api import strict_serializers as serializers
 from workspace.api.external_data import AttributesField, ExternalIdField
 from workspace.api.fields import FiniteFloatField
@@ -65,10 +66,16 @@ from workspace.models import Organisation
 
 
 class TaskSerializer(KnownFieldsSerializer):
-    """Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold."""
+    """Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold; with `views` 3 s at each photo."""
 
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
+    views = ViewsInputSerializer(required=False, allow_null=True, help_text="with photo, of a power tower: photos of every part of it")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if attrs.get("views") and attrs["kind"] != TaskKind.PHOTO:
+            raise serializers.ValidationError({"views": _("Only photos have views.")})
+        return attrs
 
 
 class WindLayerSerializer(KnownFieldsSerializer):
@@ -168,6 +175,12 @@ class TargetInputSerializer(KnownFieldsSerializer):
             raise serializers.ValidationError({"asset": _("A target needs an asset or a position.")})
         if attrs.get("stretch") and (attrs.get("asset") is None or attrs.get("position") is not None):
             raise serializers.ValidationError({"stretch": _("A stretch needs an asset and no position.")})
+        views = (attrs.get("task") or {}).get("views")
+        if views and (attrs.get("asset") is None or attrs.get("stretch")):
+            raise serializers.ValidationError({"task": _("Photos are planned of power towers that carry a line.")})
+        if views and (attrs.get("sensor") or "").strip().casefold() not in {"", views["camera"].name.strip().casefold()}:
+            message = _("The photos are planned for the camera %(camera)s: leave the sensor empty.")
+            raise serializers.ValidationError({"sensor": message % {"camera": views["camera"].name}})
         return attrs
 
 
@@ -327,23 +340,25 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
 
 
 def _target_request(target: dict[str, Any]) -> TargetRequest:
-    task, stretch = target.get("task"), target.get("stretch")
+    stretch = target.get("stretch")
+    task = _task(target["task"]) if target.get("task") else None
     return TargetRequest(
         asset=target.get("asset"),
         position=target.get("position"),
         stretch=(stretch[0], stretch[1]) if stretch else None,
-        task=_task(task) if task else None,
+        task=task,
         priority=priority_from_json(target.get("priority", TargetPriority.NORMAL)),
         uav=target.get("uav") or "",
-        sensor=target.get("sensor") or "",
+        sensor=target.get("sensor") or ("" if task is None or task.views is None else task.views.camera.name),
         external_id=target.get("external_id", ""),
         attributes=target.get("attributes", {}),
     )
 
 
 def _task(value: dict[str, Any]) -> Task:
-    kind = TaskKind(value["kind"])
-    return Task(kind, value.get("hold_s", DEFAULT_HOLD_S[kind]))
+    kind, views = TaskKind(value["kind"]), value.get("views")
+    hold_s = value.get("hold_s", VIEWS_HOLD_S if views else DEFAULT_HOLD_S[kind])
+    return Task(kind, hold_s, views_request(views) if views else None)
 
 
 class PlanInputSerializer(OptionsSerializer):

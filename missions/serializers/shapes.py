@@ -7,8 +7,9 @@ from missions.models import END_ACTIONS, MissionState, Objective, TargetPriority
 from missions.selectors.fleet import FIGURES
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
+from missions.serializers.view_plans import ViewSerializer, ViewsSerializer
 from planning.clearance.lost_link import LostLink, Trouble
-from planning.problem import TaskKind
+from planning.task import TaskKind
 from workspace.api.external_data import AttributesField
 from workspace.api.fields import WhySerializer
 from workspace.jobs.serializers import Declared
@@ -22,6 +23,8 @@ class LineSerializer(serializers.Serializer):
 class TaskOutputSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = serializers.FloatField()
+    views = ViewsSerializer(required=False, help_text="of a target of which every part is photographed")
+    view = ViewSerializer(required=False, help_text="of a waypoint at which one of these photos is taken")
 
 
 class WaypointSerializer(serializers.Serializer):
@@ -92,7 +95,7 @@ class UnassignedSerializer(serializers.Serializer):
     reason = serializers.ChoiceField(
         choices=[
             "no_path", "inside_zone", "beyond_range", "too_far_from_network", "above_height_limit", "asset_gone", "not_allowed",
-            "beyond_energy", "wind", "most_targets",
+            "beyond_energy", "wind", "most_targets", "no_photos",
         ]
     )  # fmt: skip
     message = serializers.CharField(help_text="with what is missing, where that has a number, and the minutes of flight that it is")

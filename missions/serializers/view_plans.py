@@ -1,11 +1,13 @@
 """Cameras, and plans of photos, in and out."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField
 from missions.serializers.known_fields import KnownFieldsSerializer
+from planning.task import MM_PER_M, ViewsRequest
 from planning.views.camera import InvalidCamera, camera_from_json, camera_to_json
 from planning.views.catalogue import CatalogueCamera, catalogue
 from planning.views.limits import LIMITS
@@ -79,10 +81,9 @@ class CameraCatalogueSerializer(serializers.Serializer):
     results = CatalogueCameraSerializer(many=True)
 
 
-class ViewPlanInputSerializer(KnownFieldsSerializer):
-    """Which tower, with which camera, and how fine."""
+class ViewsInputSerializer(KnownFieldsSerializer):
+    """Photos of every part: with which camera, and how fine."""
 
-    asset = serializers.IntegerField(min_value=1, help_text="id of a power tower")
     camera = CameraSerializer(required=False)
     camera_key = serializers.CharField(required=False, help_text="of the catalogue, in place of `camera`")
     gsd_mm = BetweenField(GSDS_MM, help_text="ground sample distance: what a pixel shows at most, across the optical axis")
@@ -97,6 +98,32 @@ class ViewPlanInputSerializer(KnownFieldsSerializer):
                 raise serializers.ValidationError({"camera_key": _("The catalogue has no such camera.")})
             return attrs | {"camera": known.camera}
         return attrs | {"camera": camera_from_json(attrs["camera"])}
+
+
+def views_request(values: Mapping[str, Any]) -> ViewsRequest:
+    return ViewsRequest(values["gsd_mm"] / MM_PER_M, values["camera"], values["min_height_m"])
+
+
+class ViewPlanInputSerializer(ViewsInputSerializer):
+    asset = serializers.IntegerField(min_value=1, help_text="id of a power tower")
+
+
+class ViewsSerializer(serializers.Serializer):
+    """Photos of every part of a target."""
+
+    gsd_mm = serializers.FloatField(help_text="ground sample distance: what a pixel shows at most, across the optical axis")
+    min_height_m = serializers.FloatField(help_text="of the UAV above the ground")
+    camera = CameraSerializer()
+
+
+class ViewSerializer(serializers.Serializer):
+    """How one photo is taken."""
+
+    yaw_deg = serializers.FloatField(help_text="of the camera, from true north, clockwise")
+    pitch_deg = serializers.FloatField(help_text="0 is the horizon, -90 straight down")
+    distance_m = serializers.FloatField(help_text="along the optical axis to what it shows")
+    focal_length_mm = serializers.FloatField()
+    clearance_m = serializers.FloatField(help_text="which the flight through these photos keeps from wires and supports")
 
 
 class TowerModelSerializer(serializers.Serializer):

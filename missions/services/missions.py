@@ -35,9 +35,8 @@ from planning.request import (
     moment_to_json,
     priority_from_json,
     priority_to_json,
-    task_from_json,
-    task_to_json,
 )
+from planning.task import task_from_json, task_to_json
 from workspace.audit import record_change
 from workspace.models import Organisation, User
 

@@ -7,7 +7,8 @@ from django.db import IntegrityError, transaction
 
 from missions.models import SavedSelection
 from missions.selectors.resolved_targets import resolved_targets
-from planning.request import TargetRequest, priority_to_json, task_to_json
+from planning.request import TargetRequest, priority_to_json
+from planning.task import task_to_json
 from workspace.audit import record_change
 from workspace.models import Organisation, User
 

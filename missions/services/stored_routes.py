@@ -5,7 +5,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from missions.models import Mission, Route, Waypoint
 from planning.plan import PlannedRoute
-from planning.request import task_from_json
+from planning.task import task_from_json
 from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 

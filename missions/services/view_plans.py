@@ -7,41 +7,34 @@ from typing import Any
 import numpy as np
 
 from inspection.models import Asset
+from inspection.selectors.planning import current_dataset_version
 from inspection.selectors.zone_table import zone_table
+from missions.selectors.photo_flights import keep_photo_flight, planned_views
 from missions.selectors.planning_rules import planning_rules
-from missions.selectors.tower_sites import TowerOnMap, tower_on_map
+from missions.selectors.tower_sites import TowerOnMap
 from planning.checks.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
-from planning.views.camera import Camera, camera_to_json
+from planning.task import MM_PER_M, ViewsRequest, views_to_json
 from planning.views.coverage import ComponentCoverage
-from planning.views.detail_views import DetailPlan, DetailSpeeds, detail_plan
-from planning.views.limits import DetailRules
+from planning.views.detail_views import DetailPlan
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO
-from workspace.jobs.planning_lock import hold_planning_lock
 
-MM_PER_M = 1_000.0
 ZONE_STEP_M = 5.0  # between places of the flight whose heights above ground are looked at
 
 
-class NotATower(Exception):
-    """The asset is no support of a line: only these have models yet."""
-
-
-def plan_views(*, asset: Asset, camera: Camera, asked_gsd_m: float, min_height_m: float) -> dict[str, Any]:
-    """Return the plan in the shape of the API.
+def plan_views(*, asset: Asset, views: ViewsRequest) -> dict[str, Any]:
+    """Return the plan in the shape of the API, and keep its flight for missions.
 
     Raises NotATower, TooManyPhotos, or NoWay where no flight keeps out of what stands there below the greatest height.
     """
-    found = tower_on_map(asset, min_height_m, float(np.linalg.norm(camera.offset_m)))
-    if found is None:
-        raise NotATower
-    with hold_planning_lock():
-        plan = detail_plan(found.site, camera, DetailRules(asked_gsd_m), DetailSpeeds())
-    return _plan_json(asset, camera, asked_gsd_m, found, plan)
+    version = current_dataset_version()
+    found, plan = planned_views(asset, views)
+    keep_photo_flight(asset, views, found, plan, version)
+    return _plan_json(asset, views, found, plan)
 
 
-def _plan_json(asset: Asset, camera: Camera, asked_gsd_m: float, found: TowerOnMap, plan: DetailPlan) -> dict[str, Any]:
+def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: DetailPlan) -> dict[str, Any]:
     flight, tower = plan.flight, found.site.tower
     positions = found.frame.to_degrees(flight.position[:, :2])
     agl_m = flight.position[:, 2] - found.ground_m(flight.position[:, :2])
@@ -50,8 +43,7 @@ def _plan_json(asset: Asset, camera: Camera, asked_gsd_m: float, found: TowerOnM
     whole_m2 = float(coverage.patches.area_m2.sum())
     return {
         "asset": asset.pk,
-        "camera": camera_to_json(camera),
-        "gsd_mm": asked_gsd_m * MM_PER_M,
+        **views_to_json(views),
         "focal_length_mm": plan.lens.focal_mm,
         "farthest_m": plan.lens.farthest_m,
         "clearance_m": found.site.clearance_m,

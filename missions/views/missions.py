@@ -34,8 +34,9 @@ from missions.serializers import inputs, shapes
 from missions.serializers.changes import HistoryEntrySerializer, HistoryPageSerializer
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import Charging, Departure, MissionChange
-from missions.views.plans import is_small, job_answer, planning_job
+from missions.views.plans import effort_of, is_small, job_answer, planning_job
 from missions.views.problems import api_problems
+from planning.task import task_from_json
 from workspace.api.errors import ApiProblem
 from workspace.api.external_data import EXTERNAL_ID, asked_external_id
 from workspace.api.idempotency import idempotent
@@ -158,12 +159,12 @@ def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int
     made = Job.objects.filter(organisation=user.organisation, pk=plan_of).first() if plan_of else None
     if made and services.take_plan(mission=mission, actor=user, revision=revision, job=made):
         return answer_mission(user, mission.pk, status=status)
-    targets = mission.targets.count()
-    if is_small(targets):
+    tasks = list(map(task_from_json, mission.targets.values_list("task", flat=True)))
+    if is_small(effort_of(tasks)):
         services.plan_mission(mission=mission, actor=user, expected_revision=revision)
         return answer_mission(user, mission.pk, status=status)
     services.plannable_request(mission=mission)
-    job = planning_job(user, missions.PLAN_MISSION, {"mission": str(mission.pk), "revision": revision}, targets)
+    job = planning_job(user, missions.PLAN_MISSION, {"mission": str(mission.pk), "revision": revision}, len(tasks))
     return job_answer(job, mission=str(mission.pk))
 
 

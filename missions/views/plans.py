@@ -1,5 +1,6 @@
 """Plans that are returned without being stored."""
 
+from collections.abc import Iterable
 from typing import Any
 from uuid import UUID
 
@@ -18,6 +19,7 @@ from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.services.planning.reachability import reachability
 from missions.views.problems import api_problems
 from operation.reasons import Reason
+from planning.task import Task
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.renderers import FastJSONRenderer
@@ -29,6 +31,7 @@ from workspace.models import Job, JobState, Role, User
 from workspace.reason_texts import with_message
 from workspace.tasks import send_job_on_commit
 
+PHOTOS_EFFORT = 6  # planning the photos of a target takes as long as so many targets
 SOLVE_PLAN = "missions.tasks.solve_plan"
 JOBS_RETRY_AFTER_S = 10
 STATUS_OF_FAILURE = {
@@ -92,7 +95,7 @@ class PlanList(APIView):
             refuse_too_many_jobs(request.user)
         asked = PlanInputSerializer.read_request(request.data, request.user.organisation)
         with api_problems():
-            if is_small(len(asked.targets)):
+            if is_small(effort_of(target.task for target in asked.targets)):
                 return Response(plan_with_texts(services.make_plan(request=asked, as_text=True)))
             services.resolved_targets(asked.targets)  # reports at once what a worker would reject later
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
@@ -100,6 +103,11 @@ class PlanList(APIView):
 
 def is_small(targets: int) -> bool:
     return targets <= settings.ROUTING_RULES.small_plan_targets
+
+
+def effort_of(tasks: Iterable[Task | None]) -> int:
+    """Return as how many targets these count, one task each, in the time that a plan takes."""
+    return sum(1 if task is None or task.views is None else PHOTOS_EFFORT for task in tasks)
 
 
 def _target_count(body: Any) -> int:

@@ -7,8 +7,15 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.models import Asset
-from missions.serializers.view_plans import CameraCatalogueSerializer, ViewPlanInputSerializer, ViewPlanSerializer, catalogue_json
-from missions.services.view_plans import NotATower, plan_views
+from missions.selectors.photo_flights import NotATower
+from missions.serializers.view_plans import (
+    CameraCatalogueSerializer,
+    ViewPlanInputSerializer,
+    ViewPlanSerializer,
+    catalogue_json,
+    views_request,
+)
+from missions.services.view_plans import plan_views
 from planning.views.catalogue import catalogue
 from planning.views.detail_views import TooManyPhotos
 from planning.views.view_flight import NoWay
@@ -49,9 +56,7 @@ class ViewPlans(APIView):
         if asset is None:
             raise Http404
         try:
-            plan = plan_views(
-                asset=asset, camera=values["camera"], asked_gsd_m=values["gsd_mm"] / 1_000.0, min_height_m=values["min_height_m"]
-            )
+            plan = plan_views(asset=asset, views=views_request(values))
         except NotATower as error:
             message = _("Photos are planned of power towers that carry a line.")
             raise ApiProblem(400, "not_a_tower", message, details={"asset": [message]}) from error

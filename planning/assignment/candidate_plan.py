@@ -102,7 +102,8 @@ def candidate_plan(
     if not with_costs:
         slowest_mps = min((request.uavs[uav].cruise_speed_mps for uav in uavs), default=airspace.flight.cruise_speed_mps)
         takes_s = [
-            target_s(height_m, target.task.hold_s, slowest_mps, airspace.flight) for target, height_m in zip(targets, agl_m, strict=True)
+            target_s(height_m, _hovers_s(target, slowest_mps), slowest_mps, airspace.flight)
+            for target, height_m in zip(targets, agl_m, strict=True)
         ]
     visits, courses = visits_of_targets(targets, takes_s)
     ways = paths_between(
@@ -127,6 +128,11 @@ def candidate_plan(
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
     left_out += explained_unassigned(solution.unassigned, drawing, uavs, asked, grounded, no_landing, kept_from)
     return CandidatePlan(uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
+
+
+def _hovers_s(target: ResolvedTarget, speed_mps: float) -> float:
+    """How long a UAV stays beyond what its speed takes for the metres that are counted: those of a flight through photos."""
+    return target.task.hold_s if target.photos is None else max(target.stays_s - target.photos.length_m / speed_mps, 0.0)
 
 
 def _no_landing(request: PlanRequest, uavs: Sequence[int], targets: Sequence[ResolvedTarget], airspace: Airspace) -> dict[int, NamedZone]:

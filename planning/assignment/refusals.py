@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inspection.geodesy import LonLat
 from inspection.network.route_index import asset_places
 from operation.reasons import Reason
 from planning.airspace import Airspace, zone_along, zone_at
@@ -35,14 +36,25 @@ def refused_target(target: ResolvedTarget, airspace: Airspace) -> UnassignedTarg
         figures = {"height_m": height_m, "needed_m": height_m + airspace.flight.clearance_m, "limit_m": airspace.flight.max_agl_m}
         return UnassignedTarget(target.target, "above_height_limit", (Reason("above_height_limit", figures),))
     if target.is_stretch:
-        zone = zone_along(target.course, agl_m, airspace)
+        zone = zone_along(target.course, (agl_m, agl_m), airspace)
         if zone is not None:
             return UnassignedTarget(target.target, "inside_zone", (Reason("runs_through_zone", zone.params),))
     else:
         zone = zone_at(target.course[0], airspace, agl_m)
         if zone is not None:
             return UnassignedTarget(target.target, "inside_zone", (Reason("stands_inside_zone", zone.params),))
-    return None
+    return _without_photos(target, airspace)
+
+
+def _without_photos(target: ResolvedTarget, airspace: Airspace) -> UnassignedTarget | None:
+    """Return why the photos that are asked of a target cannot be taken, or None."""
+    if target.no_photos is not None:
+        return UnassignedTarget(target.target, "no_photos", (target.no_photos,))
+    if target.photos is None:
+        return None
+    heights_m = float(target.photos.agl_m.min()), float(target.photos.agl_m.max())
+    zone = zone_along([LonLat(*at) for at in target.photos.position.tolist()], heights_m, airspace)
+    return None if zone is None else UnassignedTarget(target.target, "inside_zone", (Reason("photos_meet_zone", zone.params),))
 
 
 def target_height_m(target: ResolvedTarget, airspace: Airspace) -> float:

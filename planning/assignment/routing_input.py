@@ -42,6 +42,8 @@ def visits_of_targets(
     for number, target in enumerate(targets):
         service_s = 0.0 if takes_s is None else takes_s[number]
         length_m = path_length_m(np.array(target.course)) if target.is_stretch else 0.0
+        if target.photos is not None:
+            length_m = target.photos.length_m
         visits.append(Visit(number, is_reversed=False, length_m=length_m, service_s=service_s))
         courses.append(target.course)
         if target.is_stretch:
@@ -77,7 +79,7 @@ def costs_of_flying(routing: RoutingInput, uavs: Sequence[int]) -> FlightCosts:
         visits=FlownVisits(
             routing.courses,
             [routing.agl_m[visit.target] for visit in routing.visits],
-            [routing.targets[visit.target].task.hold_s for visit in routing.visits],
+            [routing.targets[visit.target].stays_s for visit in routing.visits],
         ),
         conditions=request.conditions,
         rules=airspace.flight,

@@ -1,7 +1,8 @@
 """The last look at towers and wires before a plan leaves: no leg passes one too near. Shares no code with the drawing that rises over them.
 
 Legs are straight from waypoint to waypoint in place and height; they are walked in steps, and each step is measured from the wires
-beside it, which hang no higher than straight from top to top. Where a UAV takes off and lands is its operator's choice: the columns there
+beside it, which hang no higher than straight from top to top. A flight through photos comes nearer: it keeps its own clearance, from the
+wires of its target too, over them or beside them. Where a UAV takes off and lands is its operator's choice: the columns there
 are not looked at.
 """
 
@@ -17,12 +18,14 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.spans import Spans
 from planning.rules import FlightRules
 from planning.trajectory.heights import GroundHeights
+from planning.trajectory.photo_flights import clearances_m
 from planning.trajectory.waypoints import BASE, NONE, FloatArray, RoutePoints, Waypoints
 
 BESIDE_M = 24.0  # across the ground; drawing keeps a little more
-STEP_M = 4.0
+STEP_M, STEPS_BESIDE = 4.0, 5.0  # of a leg; as many at least as fit in what is kept beside a wire
 SHORT_M = 2.0  # by so much a leg may come short of the clearance right over a wire: rounding, steps, a tower come to on a slope
 SLOPE = 0.3  # and by that much more for each metre beside it: then it is farther away all the same
+PHOTO_SHORT_M = 0.5  # the same of a flight through photos, of its own clearance: rounding, and the frames of both
 SAME_M = 2.0
 NEAR_DEG = 0.002
 UNKNOWN_TOP_M = 1e6  # of what stands on ground that is not known: nothing is clear of it
@@ -60,9 +63,13 @@ def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHe
         reported_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
         top_m[used] += np.where(np.isnan(reported_m).any(axis=1, keepdims=True), UNKNOWN_TOP_M, reported_m)
     found: set[tuple[int, int]] = set()
-    too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], rules.clearance_m)
-    for own_leg, own_span in zip(leg[too_near].tolist(), span[too_near].tolist(), strict=True):
-        if not _is_inspected(points, line, own_leg, start[own_span], end[own_span], int(spans.asset[near[own_span]])):
+    kept_m = clearances_m(points)[leg + 1]
+    is_photo = ~np.isnan(kept_m)
+    kept = np.column_stack([np.full(len(leg), rules.clearance_m - SHORT_M), np.full(len(leg), SLOPE), np.full(len(leg), BESIDE_M)])
+    kept[is_photo] = np.column_stack([kept_m - PHOTO_SHORT_M, np.zeros(len(leg)), kept_m - PHOTO_SHORT_M])[is_photo]
+    too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], kept)
+    for own_leg, own_span, photo in zip(leg[too_near].tolist(), span[too_near].tolist(), is_photo[too_near].tolist(), strict=True):
+        if photo or not _is_inspected(points, line, own_leg, start[own_span], end[own_span], int(spans.asset[near[own_span]])):
             found.add((own_leg, int(near[own_span])))
     return found
 
@@ -162,27 +169,31 @@ def lines_between(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:
 
 @njit(cache=True, nogil=True)
 def _too_near(
-    line: FloatArray, level_m: FloatArray, leg: IntArray, start: FloatArray, end: FloatArray, top_m: FloatArray, clearance_m: float
+    line: FloatArray, level_m: FloatArray, leg: IntArray, start: FloatArray, end: FloatArray, top_m: FloatArray, kept: FloatArray
 ) -> NDArray[np.bool_]:
-    """Of pairs of a leg and a wire from start to end, (p, 2) each, between tops (p, 2): whether a step of the leg is too near to it."""
+    """Of pairs of a leg and a wire from start to end, (p, 2) each, between tops (p, 2): whether a step of the leg is too near to it.
+
+    kept (p, 3): the height over the wire [m], how much less of it does for each metre beside it, and how far beside it matters [m].
+    """
     too_near = np.zeros(len(leg), dtype=np.bool_)
     for pair in range(len(leg)):
         here, there = leg[pair], leg[pair] + 1
-        if min(level_m[here], level_m[there]) >= max(top_m[pair, 0], top_m[pair, 1]) + clearance_m - SHORT_M:
+        over_kept_m, slope, beside_kept_m = kept[pair]
+        if min(level_m[here], level_m[there]) >= max(top_m[pair, 0], top_m[pair, 1]) + over_kept_m:
             continue
         by_x, by_y = line[there, 0] - line[here, 0], line[there, 1] - line[here, 1]
         along_x, along_y = end[pair, 0] - start[pair, 0], end[pair, 1] - start[pair, 1]
         squared = along_x * along_x + along_y * along_y
-        steps = math.ceil(math.hypot(by_x, by_y) / STEP_M) + 1
+        steps = math.ceil(math.hypot(by_x, by_y) / min(STEP_M, beside_kept_m / STEPS_BESIDE)) + 1
         for step in range(steps + 1):
             share = step / steps
             off_x, off_y = line[here, 0] + share * by_x - start[pair, 0], line[here, 1] + share * by_y - start[pair, 1]
             where = min(max((off_x * along_x + off_y * along_y) / squared, 0.0), 1.0) if squared > 0.0 else 0.0
             beside_m = math.hypot(off_x - where * along_x, off_y - where * along_y)
-            if beside_m > BESIDE_M:
+            if beside_m > beside_kept_m:
                 continue
             over_m = level_m[here] + share * (level_m[there] - level_m[here]) - top_m[pair, 0] - where * (top_m[pair, 1] - top_m[pair, 0])
-            if over_m < clearance_m - SHORT_M - SLOPE * beside_m:
+            if over_m < over_kept_m - slope * beside_m:
                 too_near[pair] = True
                 break
     return too_near

@@ -30,9 +30,10 @@ from planning.energy.conditions import Conditions
 from planning.energy.leg_cost import J_PER_WH
 from planning.energy.node_cost import DONE, LANDING, LANDING_THERE, TAKE_OFF, UP, at_nodes, both_directions
 from planning.energy.path_cost import NO_HEADWAY, FlightClass, GraphTaken, graph_taken
-from planning.problem import DEFAULT_HOLD_S, End, TaskKind
+from planning.problem import End
 from planning.reachability.reachable_assets import NodeReach, Reach, Reachability, of_assets
 from planning.rules import FlightRules
+from planning.task import DEFAULT_HOLD_S, TaskKind
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -22,6 +22,7 @@ from planning.problem import Routes
 from planning.request import BaseRequest, EndAction, InvalidRequest
 from planning.trajectory.heights import pass_agl_m, with_heights
 from planning.trajectory.obstacles import rising_over
+from planning.trajectory.photo_flights import GroundNotKnown, with_photo_flights
 from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
 from planning.trajectory.sorties import joined_sorties, timing_of_route
 from planning.trajectory.timing import Timing
@@ -141,7 +142,13 @@ class TrajectoryBuilder(RoutingInput):
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)
         waypoints, blocked = rising_over(waypoints, spans_of(self.airspace.network), ground, flight)
-        return _Flight(without_idle_points(waypoints), length_m, is_flat, blocked)
+        photos = {target.target: target.photos for visit in order if (target := self.targets[self.visits[visit].target]).photos is not None}
+        try:
+            flown = with_photo_flights(without_idle_points(waypoints), photos)
+        except GroundNotKnown as error:
+            raise InvalidRequest({f"targets.{error.target}.task": Reason("photos_ground_unknown")}) from error
+        length_m += sum(flight.length_m for flight in photos.values())
+        return _Flight(flown, length_m, is_flat, blocked)
 
     def _base(self, action: EndAction, order: Sequence[int]) -> BaseRequest | None:
         return self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import short_distance_m
-from planning.problem import Task
+from planning.task import Task
 from planning.trajectory.waypoints import END, NONE, PASS, START, TARGET, FloatArray, IntArray, RoutePoints, Waypoints
 
 SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement

@@ -8,8 +8,8 @@ import numpy as np
 from inspection.geodesy import path_length_m
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance
-from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
+from planning.task import Task, TaskKind
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import BASE, NONE, FloatArray, RoutePoints, Waypoints
 
@@ -59,7 +59,7 @@ def timing_of_route(
     stops = np.flatnonzero(waypoints.points.kind == BASE).tolist()
     flown = [
         timing(
-            _part(waypoints, begin, end),
+            waypoints if end - begin == len(waypoints) else waypoints.part(begin, end),
             cruise_speed_mps=cruise_speed_mps,
             performance=performance,
             conditions=conditions,
@@ -72,23 +72,6 @@ def timing_of_route(
     for stop, sortie in zip(stops, flown[1:], strict=True):
         whole = _one_after_another(whole, sortie, waypoints.points.task[stop].hold_s)
     return whole
-
-
-def _part(waypoints: Waypoints, begin: int, end: int) -> Waypoints:
-    points, own = waypoints.points, slice(begin, end)
-    if begin == 0 and end == len(points):
-        return waypoints
-    agl_m = points.agl_m[own]
-    part = RoutePoints(
-        points.position[own],
-        agl_m,
-        points.kind[own],
-        points.asset[own],
-        points.target[own],
-        {place - begin: task for place, task in points.task.items() if begin <= place < end},
-        {place - begin: speed_mps for place, speed_mps in points.speed_mps.items() if begin <= place < end},
-    )
-    return Waypoints(part, None if waypoints.amsl_m is None else waypoints.amsl_m[own], waypoints.relative_m[own])
 
 
 def _one_after_another(first: Timing, second: Timing, turnaround_s: float) -> Timing:

@@ -15,9 +15,10 @@ from planning.energy.assignment_costs import Finish, FlownVisits, FlyingFleet, f
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
-from planning.problem import End, Task, TaskKind
+from planning.problem import End
 from planning.rules import FlightRules, SeparationRules
 from planning.separation.separation import TimedRoute, keep_apart
+from planning.task import Task, TaskKind
 from planning.trajectory.heights import GroundModel, with_heights
 from planning.trajectory.obstacles import highest_agl_m, rising_over
 from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs

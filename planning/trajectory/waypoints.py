@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
-from planning.problem import Task
+from planning.task import Task
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -173,3 +173,17 @@ class Waypoints:
 
     def __iter__(self) -> Iterator[Waypoint]:
         return map(self.__getitem__, range(len(self)))
+
+    def part(self, begin: int, end: int) -> "Waypoints":
+        """Those from one place up to but without another."""
+        points, own = self.points, slice(begin, end)
+        part = RoutePoints(
+            points.position[own],
+            points.agl_m[own],
+            points.kind[own],
+            points.asset[own],
+            points.target[own],
+            {place - begin: task for place, task in points.task.items() if begin <= place < end},
+            {place - begin: speed_mps for place, speed_mps in points.speed_mps.items() if begin <= place < end},
+        )
+        return Waypoints(part, None if self.amsl_m is None else self.amsl_m[own], self.relative_m[own])

@@ -1,7 +1,7 @@
 """Photos of every part of an asset at an asked ground sample distance, from outside the clearance, and the flight through them."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from planning.views.limits import DetailRules, Limits, limits_of
 from planning.views.site import TowerSite
 from planning.views.solids import Component, FloatArray, Patches, Solid, patches_of
 from planning.views.view_flight import NO_PHOTO, ViewFlight, view_flight
-from planning.views.visibility import Poses, RayCaster, aim_at, in_frame, line_of_sight
+from planning.views.visibility import Poses, RayCaster, aim_at, axes_of, in_frame, line_of_sight
 
 BoolArray = NDArray[np.bool_]
 
@@ -32,6 +32,7 @@ MIN_REACHABLE_SHARE = 0.1  # of a surface that can be shown: below, it is looked
 MIN_SHOWN_SHARE = 0.2  # of what the photo shows that shows the most: below, a photo is weighed only where it alone shows a patch
 PROOF_PATCH_M = 1.0  # sides of patches on which coverage is told
 ENTRY_ABOVE_M = 2.0  # the keep-out over the tower
+MIN_PITCH_DEG = -80.0
 REACH_M = 80.0  # from the asset's axis, of candidate positions
 LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
 MIN_LENS_SHARE = 0.99  # of what the longest focal length reaches, for a shorter one to do
@@ -104,9 +105,10 @@ class DetailSpeeds:
 
 @dataclass(frozen=True, eq=False)
 class DetailPlan:
-    """Photos in the order flown. bound: see DetailViews. seconds: from the entry over the tower back to it."""
+    """Photos in the order flown. distance_m: along each optical axis to the tower. bound: see DetailViews. seconds: of the whole flight."""
 
     poses: Poses
+    distance_m: FloatArray
     lens: Lens
     flight: ViewFlight
     coverage: Coverage
@@ -116,7 +118,12 @@ class DetailPlan:
 
 
 def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: DetailSpeeds) -> DetailPlan:
-    """Plan photos of the site's tower. Raises TooManyPhotos, or NoWay where the flight over the wires would be too high."""
+    """Plan photos of the site's tower. Raises TooManyPhotos, or NoWay where the flight over the wires would be too high.
+
+    No photo looks steeper down than MIN_PITCH_DEG: UAVs are told where to look by a place, and one right under them has no bearing.
+    """
+    pitch_min_deg = min(max(camera.gimbal.pitch_min_deg, MIN_PITCH_DEG), camera.gimbal.pitch_max_deg)
+    camera = replace(camera, gimbal=replace(camera.gimbal, pitch_min_deg=pitch_min_deg))
     views = detail_views(site.solid, site.keep_out, camera, rules)
     entry = np.array([0.0, 0.0, site.keep_out.top_at(np.zeros(2)) + ENTRY_ABOVE_M])
     flight = view_flight(views.poses, site.keep_out, entry, entry)
@@ -129,9 +136,18 @@ def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: Det
     limits = limits_of(patches, site.keep_out, caster, camera, farthest_m)
     coverage = coverage_of(poses, views.lens, camera, patches, caster, limits.limit)
     return DetailPlan(
-        poses, views.lens, ViewFlight(flight.position, renumbered), coverage, by_component(site.solid, coverage), views.bound,
-        _seconds(flight.position, len(poses), speeds),
+        poses, _distance_m(poses, caster), views.lens, ViewFlight(flight.position, renumbered), coverage,
+        by_component(site.solid, coverage), views.bound, _seconds(flight.position, len(poses), speeds),
     )  # fmt: skip
+
+
+def _distance_m(poses: Poses, caster: RayCaster) -> FloatArray:
+    """To what each photo shows in its middle; as far as the tower's axis where that is none of it."""
+    _, _, forward = axes_of(poses.yaw_deg, poses.pitch_deg)
+    away_m = caster.distance_m(poses.position, forward)
+    beside_m = np.maximum(np.hypot(poses.position[:, 0], poses.position[:, 1]), 1.0)
+    found: FloatArray = np.where(np.isfinite(away_m), away_m, beside_m)
+    return found
 
 
 def _seconds(position: FloatArray, photos: int, speeds: DetailSpeeds) -> float:

@@ -15,6 +15,7 @@ BoolArray = NDArray[np.bool_]
 
 MAX_ANGLE_DEG = 60.0  # between the line of sight and a surface's normal: beyond, a surface is not counted as seen
 FRAME_MARGIN = 0.05  # of half of the picture at each edge, for the errors of aim and position
+NO_HIT_M = 1e30  # Embree's answer for a ray that meets nothing is larger
 OFF_SURFACE_M = 0.005  # by which rays begin above it
 
 
@@ -55,6 +56,13 @@ class RayCaster:
         )
         free: BoolArray = np.asarray(met) != 0
         return free
+
+    def distance_m(self, start: FloatArray, direction: FloatArray) -> FloatArray:
+        """How far each ray, (n, 3) each, goes until it meets something [m]; inf where it meets nothing."""
+        if not len(start):
+            return np.zeros(0)
+        away_m = np.asarray(self._scene.run(start.astype(np.float32), direction.astype(np.float32), query="DISTANCE"), dtype=np.float64)
+        return np.where(away_m < NO_HIT_M, away_m, np.inf)
 
 
 def line_of_sight(positions: FloatArray, patches: Patches, caster: RayCaster, farthest_m: float) -> BoolArray:

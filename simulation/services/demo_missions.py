@@ -24,8 +24,9 @@ from missions.services.commands.refused import refuse
 from missions.services.fleet.demo_uavs import create_demo_uavs
 from operation.reasons import Reason, Why
 from planning.energy.conditions import Conditions, WindLayer
-from planning.problem import Objective, Task, TaskKind
+from planning.problem import Objective
 from planning.request import EndAction
+from planning.task import Task, TaskKind
 from simulation.models import Simulation
 from simulation.services.demo_flights import fly_demo_mission
 from simulation.services.simulations import end_simulation

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from inspection.geodesy import LonLat
 from mavlink.approved_route import RETURN, FrozenRoute, FrozenWaypoint, TakeOff
-from planning.problem import Task
+from planning.task import Task
 from planning.trajectory.waypoints import WaypointKind
 
 START = LonLat(9.8, 55.4)

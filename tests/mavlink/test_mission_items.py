@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.approved_route import BASE, HOVER, LAND, RETURN, NotARoute, route_from_json, route_to_json
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.vehicle_plan import FlightLoad, MissionItem, load_from_json, load_to_json
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from tests.mavlink.routes import START, route, start_and_end, waypoint
 

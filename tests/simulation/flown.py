@@ -16,7 +16,7 @@ from inspection.zones.reach import HeightLimits as ZoneLimits
 from inspection.zones.reach import ZoneTable, agl_band
 from inspection.zones.schedule import Schedule, ZoneRules
 from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from simulation.assessment.flown import AssessedRoute, FlownFlight, FlownTrack, TrackEnding
 from simulation.assessment.judging import Surroundings

@@ -28,7 +28,8 @@ from missions.services.approval.fence import rally_points, zones_beside
 from missions.services.commands.refused import RefusalReason, Refused
 from planning.clearance.nearby_zones import zones_near
 from planning.energy.conditions import conditions_from_json, conditions_to_json
-from planning.request import EndAction, lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
+from planning.request import EndAction, lost_link_from_json, lost_link_to_json, moment_to_json
+from planning.task import task_from_json
 from planning.trajectory.waypoints import WaypointKind
 
 COORDINATE_DIGITS = 7  # about a centimetre

@@ -26,7 +26,8 @@ from missions.services.manual_edits.stored_route import kept_waypoints
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from planning.plan import PlannedRoute
 from planning.request import InvalidRequest
-from planning.trajectory.waypoints import RoutePoint, RoutePoints
+from planning.task import task_to_json
+from planning.trajectory.waypoints import RoutePoints
 from workspace.models import User
 
 MAX_STEPS = 5  # that can be undone
@@ -148,7 +149,7 @@ def store_manual_edit(mission: Mission, route: Route, flown: PlannedRoute, by_ha
                 position=Point(*waypoint.point.position, srid=4326),
                 asset_id=waypoint.point.asset,
                 target_id=None if waypoint.point.target is None else targets[waypoint.point.target],
-                task=_task(waypoint.point),
+                task=None if waypoint.point.task is None else task_to_json(waypoint.point.task),
                 altitude_agl_m=round(waypoint.point.agl_m, 2),
                 altitude_amsl_m=None if waypoint.amsl_m is None else round(waypoint.amsl_m, 2),
                 altitude_relative_m=round(waypoint.relative_m, 2),
@@ -162,10 +163,6 @@ def store_manual_edit(mission: Mission, route: Route, flown: PlannedRoute, by_ha
         ),
         batch_size=1_000,
     )
-
-
-def _task(point: RoutePoint) -> dict[str, Any] | None:
-    return None if point.task is None else {"kind": point.task.kind.value, "hold_s": point.task.hold_s}
 
 
 def places_of(points: RoutePoints, by_hand: NDArray[np.bool_]) -> set[tuple[float, float, float]]:

@@ -9,7 +9,7 @@ from typing import Any
 from inspection.geodesy import LonLat
 from inspection.models import Asset
 from missions.models import Mission, Route, Waypoint
-from planning.request import task_from_json
+from planning.task import task_from_json
 from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 SAME_PLACE_DIGITS = 7  # of a degree: a centimetre

@@ -10,8 +10,8 @@ from inspection.geodesy import LonLat
 from inspection.selectors.planning import DatasetVersion
 from missions.models import Mission, Waypoint
 from missions.services.missions import request_of_mission
-from planning.problem import Task
-from planning.request import PlanRequest, task_from_json
+from planning.request import PlanRequest
+from planning.task import Task, task_from_json
 from planning.trajectory.waypoints import WaypointKind
 
 MAX_KEPT = 32  # routes in a process

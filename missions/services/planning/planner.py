@@ -22,6 +22,7 @@ from planning.progress import OnPlanProgress, PlanProgress, no_progress
 from planning.request import PlanRequest
 from planning.solver.solver import Stop, never
 from workspace.jobs.planning_lock import hold_planning_lock, release_planning_lock
+from workspace.jobs.services import JobCancelled
 
 SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # maximum of targets, and the label
 ABOVE_ALL_SIZES = "201-"
@@ -99,7 +100,13 @@ def make_plan(
     Raises InvalidRequest, NoGraph or GraphOutdated.
     """
     on_progress(PlanProgress(0.0, Reason("looking_up_targets")))
-    ground, targets, deleted = read_targets(request)
+
+    def on_photos(planned: int, asked: int) -> None:
+        if stop():
+            raise JobCancelled
+        on_progress(PlanProgress(0.05 * planned / asked, Reason("planning_photos", {"target": planned + 1, "targets": asked})))
+
+    ground, targets, deleted = read_targets(request, on_photos)
     for _ in range(MAX_CONTEXTS):
         context = planning_context(request, ground, targets, deleted)
         terrain = terrain_at(ground.dataset_version)

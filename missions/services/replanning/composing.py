@@ -13,7 +13,8 @@ from operation.reasons import Reason
 from planning.energy.conditions import Conditions
 from planning.energy.power import NoHeadway
 from planning.plan import PlannedRoute
-from planning.request import EndAction, task_from_json
+from planning.request import EndAction
+from planning.task import task_from_json
 from planning.trajectory.route_points import line_of
 from planning.trajectory.sorties import timing_of_route
 from planning.trajectory.timing import Timing

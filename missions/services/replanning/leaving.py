@@ -12,7 +12,8 @@ from operation.reasons import Reason, text_reason
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, Air, hold_taken
 from planning.energy.performance import InvalidPerformance, Performance, performance_from_json
-from planning.request import EndAction, UavRequest, task_from_json
+from planning.request import EndAction, UavRequest
+from planning.task import task_from_json
 from planning.trajectory.remaining_route import HEIGHT_ROUNDING_M, where_to_leave
 from planning.trajectory.waypoints import RoutePoint, WaypointKind
 

@@ -10,7 +10,7 @@ from mavlink.mission_items import flight_loads
 from mavlink.mission_sync.outcome import SyncState
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from tests.mavlink.routes import start_and_end, waypoint
 from tests.mavlink.test_fence import square

@@ -16,9 +16,10 @@ from inspection.selectors import NoGraph
 from inspection.services import import_terrain
 from missions.models import Uav
 from missions.services import NO_SHORTFALL, BaseRequest, InvalidRequest, TargetRequest, make_plan
-from planning.problem import Objective, Task, TaskKind
+from planning.problem import Objective
 from planning.progress import PlanProgress
 from planning.request import EndAction
+from planning.task import Task, TaskKind
 from tests.exact_geometry import segment_meets_polygon
 from tests.inspection import ground
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, island, power_line, rebuild, request, uav, world, zone_around

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat
 from planning.plan_json import line_text, waypoints_text, waypoints_to_json
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 HEIGHTS = (st.floats(-500, 9_000) | st.sampled_from([60.0, 2.675, 1e-7, 119.995])).map(lambda height_m: height_m + 0.0)  # no -0.0

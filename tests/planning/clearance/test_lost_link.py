@@ -22,8 +22,8 @@ from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.energy.power import power_w
-from planning.problem import Task, TaskKind
 from planning.rules import AT_ONCE, FlightRules
+from planning.task import Task, TaskKind
 from planning.trajectory.sorties import joined_sorties, timing_of_route
 from planning.trajectory.timing import timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints

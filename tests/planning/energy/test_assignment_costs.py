@@ -23,8 +23,9 @@ from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass, NodeGround
 from planning.energy.performance import Performance
 from planning.energy.power import power_w
-from planning.problem import End, Task, TaskKind
+from planning.problem import End
 from planning.rules import FlightRules, Manoeuvres
+from planning.task import Task, TaskKind
 from planning.trajectory.heights import pass_agl_m
 from planning.trajectory.route_points import PassedNodes, TargetPoints, route_points, with_short_legs
 from planning.trajectory.timing import Timing, timing

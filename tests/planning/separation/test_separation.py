@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat
-from planning.problem import Task, TaskKind
 from planning.rules import FlightRules, SeparationRules
 from planning.separation.report import separation_json
 from planning.separation.separation import (
@@ -21,6 +20,7 @@ from planning.separation.separation import (
     raised_agl_m,
     timed_route,
 )
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from tests.planning.separation.dense_separation import least_seconds_apart, moments_of
 

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.terrain.heights import HeightGrid
-from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
+from planning.task import Task, TaskKind
 from planning.trajectory.heights import FloatArray, asset_height_m, inspection_agl_m, is_above_limit, pass_agl_m, with_heights
 from planning.trajectory.waypoints import PASS, RoutePoint, RoutePoints, WaypointKind, Waypoints
 from tests.planning.trajectory.posted_ground import PostedGround, ground_like, ground_of, tiled

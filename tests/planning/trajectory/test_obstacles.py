@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from inspection.geodesy import LonLat
 from inspection.network.spans import Spans, spans_between
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
-from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
+from planning.task import Task, TaskKind
 from planning.trajectory.beside_spans import AT_M
 from planning.trajectory.heights import with_heights
 from planning.trajectory.obstacles import rising_over, too_low

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from tests.planning.plain_route import plain_route

@@ -15,8 +15,8 @@ from inspection.geodesy.wgs84 import WGS84
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.energy.power import NoHeadway, power_w
-from planning.problem import Task, TaskKind
 from planning.rules import AT_ONCE, FlightRules
+from planning.task import Task, TaskKind
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 

@@ -12,7 +12,7 @@ from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Disarmed, ItemReached, LandedAt, MissionEnded, ModeChanged, PhotoTaken, TookOff

@@ -12,8 +12,8 @@ from mavlink.approved_route import HOVER, LAND, FrozenRoute, FrozenWaypoint, Tak
 from mavlink.mission_items import flight_loads
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
-from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
+from planning.task import Task, TaskKind
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from simulation.flight.airframe import AIRFRAMES

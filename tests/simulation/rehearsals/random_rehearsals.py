@@ -15,8 +15,9 @@ from missions.models import Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.commands.refused import Refused
 from planning.energy.performance import Performance
-from planning.problem import Objective, Task, TaskKind
+from planning.problem import Objective
 from planning.request import EndAction
+from planning.task import Task, TaskKind
 from simulation.assessment.judging import Assessment, judge
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly

@@ -12,8 +12,8 @@ from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
-from planning.problem import Task, TaskKind
 from planning.rules import FlightRules, Manoeuvres
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan

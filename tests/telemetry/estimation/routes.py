@@ -14,7 +14,7 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import HOVER, RETURN, Flight, FrozenRoute, FrozenWaypoint, TakeOff
 from planning.energy.conditions import Conditions, WindLayer
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.estimation.knowledge import Knowledge
 

@@ -19,7 +19,7 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import RETURN, FrozenRoute, FrozenWaypoint, TakeOff
 from mavlink.decoding.measurement import Measurement
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.knowledge import Knowledge

@@ -6,7 +6,7 @@ from missions.models import Mission, MissionState, Uav
 from missions.services import TargetRequest
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.refused import RefusalReason, Refused
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from telemetry.models import UavLink
 from tests.missions.flights import an_operator, fleet, planned
 from tests.missions.worlds import world

@@ -7,7 +7,7 @@ from dataclasses import replace
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute, FrozenWaypoint, TakeOff
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.mission_report.fix import Fix
 

@@ -12,8 +12,8 @@ import pytest
 from missions.models import Mission, Uav
 from missions.services import TargetRequest
 from planning.clearance.lost_link import LostLink
-from planning.problem import Task, TaskKind
 from planning.request import LostLinkRequest
+from planning.task import Task, TaskKind
 from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around

@@ -9,7 +9,7 @@ from missions.models import CommandKind, CommandState, Mission, MissionState
 from missions.services import TargetRequest
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import load_of
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import a_user, client_of
 from tests.missions.flights import approved, ground

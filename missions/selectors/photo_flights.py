@@ -1,0 +1,115 @@
+"""Flights through the photos that targets ask for, planned once for each tower, camera and map, and kept."""
+
+import contextlib
+import hashlib
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import numpy as np
+from django.conf import settings
+from django.core.cache import cache
+
+from inspection.models import Asset
+from inspection.selectors.planning import DatasetVersion, terrain_at
+from missions.selectors.tower_sites import TowerOnMap, tower_on_map
+from operation.reasons import Reason, reason_from_json
+from planning.context import ResolvedTarget
+from planning.task import ViewsRequest, views_to_json
+from planning.views.detail_views import DetailPlan, DetailSpeeds, TooManyPhotos, detail_plan
+from planning.views.limits import DetailRules
+from planning.views.photo_flight import GroundUnknown, PhotoFlight, photo_flight
+from planning.views.view_flight import NoWay
+from workspace.cache_unavailable import CACHE_UNAVAILABLE
+from workspace.jobs.planning_lock import hold_planning_lock
+
+KEPT_S = 7 * 86_400
+VERSION = 1  # counts the changes of what a flight is planned by, or is kept as
+
+AnyTarget = TypeVar("AnyTarget", bound=ResolvedTarget)
+OnPhotos = Callable[[int, int], None]  # of targets with photos: so many are planned, of so many
+
+
+class NotATower(Exception):
+    """The asset is no support of a line: only these have models yet."""
+
+
+def planned_views(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, DetailPlan]:
+    """Return the site of a tower and its photos. Raises NotATower, TooManyPhotos or NoWay."""
+    found = tower_on_map(asset, views.min_height_m, float(np.linalg.norm(views.camera.offset_m)))
+    if found is None:
+        raise NotATower
+    with hold_planning_lock():
+        return found, detail_plan(found.site, views.camera, DetailRules(views.gsd_m), DetailSpeeds())
+
+
+def keep_photo_flight(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: DetailPlan, version: DatasetVersion) -> None:
+    """Keep the flight of a plan of photos, so that a mission with them is planned at once."""
+    _keep(_key(asset.pk, views, version), _flight(found, plan))
+
+
+def with_photo_flights(targets: Sequence[AnyTarget], version: DatasetVersion, on_photos: OnPhotos) -> list[AnyTarget]:
+    """Return the targets, those that ask for photos with the flight through them, or with the reason why there is none."""
+    asked = {place: target.task.views for place, target in enumerate(targets) if target.task.views is not None}
+    if not asked:
+        return list(targets)
+    assets = Asset.objects.in_bulk([key for place in asked if (key := targets[place].asset) is not None])
+    found = list(targets)
+    for count, (place, views) in enumerate(asked.items()):
+        on_photos(count, len(asked))
+        key = targets[place].asset
+        flight = Reason("photos_not_a_tower") if key is None or key not in assets else _photo_flight(assets[key], views, version)
+        if isinstance(flight, Reason):
+            found[place] = replace(targets[place], no_photos=flight)
+        else:
+            found[place] = replace(targets[place], photos=flight)
+    return found
+
+
+def _photo_flight(asset: Asset, views: ViewsRequest, version: DatasetVersion) -> PhotoFlight | Reason:
+    key = _key(asset.pk, views, version)
+    kept = _kept(key)
+    if kept is not None:
+        return kept
+    try:
+        flight: PhotoFlight | Reason = _flight(*planned_views(asset, views))
+    except NotATower:
+        return Reason("photos_not_a_tower")
+    except TooManyPhotos:
+        flight = Reason("photos_too_many")
+    except NoWay:
+        flight = Reason("photos_no_way")
+    _keep(key, flight)
+    return flight
+
+
+def _flight(found: TowerOnMap, plan: DetailPlan) -> PhotoFlight | Reason:
+    if found.base_amsl_m is None:
+        return Reason("photos_need_terrain")
+    if not len(plan.poses):
+        return Reason("photos_none_possible")
+    try:
+        return photo_flight(plan, found.frame, found.base_amsl_m, found.ground_m, found.site.clearance_m)
+    except GroundUnknown:
+        return Reason("photos_need_terrain")
+
+
+def _key(asset: int, views: ViewsRequest, version: DatasetVersion) -> str:
+    by: dict[str, Any] = {
+        "version": VERSION, "asset": asset, "views": views_to_json(views), "map": str(version), "terrain": str(terrain_at(version)),
+        "rules": [repr(settings.CLEARANCE_RULES), settings.FLIGHT_RULES.max_agl_m],
+    }  # fmt: skip
+    return "photos:" + hashlib.sha256(json.dumps(by, sort_keys=True).encode()).hexdigest()
+
+
+def _kept(key: str) -> PhotoFlight | Reason | None:
+    with contextlib.suppress(*CACHE_UNAVAILABLE):
+        if (kept := cache.get(key)) is not None:
+            return PhotoFlight.from_json(kept["flight"]) if "flight" in kept else reason_from_json(kept["reason"])
+    return None
+
+
+def _keep(key: str, flight: PhotoFlight | Reason) -> None:
+    with contextlib.suppress(*CACHE_UNAVAILABLE):
+        cache.set(key, {"reason": flight.to_json()} if isinstance(flight, Reason) else {"flight": flight.to_json()}, KEPT_S)

@@ -1,0 +1,111 @@
+"""What is done at a target and at a waypoint."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from planning.views.camera import Camera, camera_from_json, camera_to_json
+
+MAX_HOLD_S = 3_600.0
+VIEWS_HOLD_S = 3.0  # at each photo of a view plan: until the UAV stands still and has turned, and for the photo
+MM_PER_M = 1_000.0
+
+
+class TaskKind(StrEnum):
+    LOOK = "look"  # slow down and film the asset in passing
+    PHOTO = "photo"  # stand still for sharp pictures
+    HOLD = "hold"  # hover over the place
+
+
+# Seconds at the target when the operator names the kind of task alone: a look in passing, one round of pictures, a longer hover.
+DEFAULT_HOLD_S = {TaskKind.LOOK: 5.0, TaskKind.PHOTO: 10.0, TaskKind.HOLD: 30.0}
+
+
+@dataclass(frozen=True)
+class ViewsRequest:
+    """Photos of every part of a target, from planned poses. gsd_m: ground sample distance, what a pixel may show at most."""
+
+    gsd_m: float
+    camera: Camera
+    min_height_m: float = 4.0  # of the UAV above the ground
+
+
+@dataclass(frozen=True)
+class View:
+    """How one photo is taken.
+
+    yaw_deg: of the camera from true north, clockwise; pitch_deg: 0 is the horizon, -90 straight down; distance_m: along the optical axis
+    to what it shows; clearance_m: which the flight through this photo and its neighbours keeps from wires and supports.
+    """
+
+    yaw_deg: float
+    pitch_deg: float
+    distance_m: float
+    focal_length_mm: float
+    clearance_m: float
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is done at a target; the UAV stays `hold_s` seconds, or as long at each photo of `views`. view: of a waypoint's one photo."""
+
+    kind: TaskKind
+    hold_s: float
+    views: ViewsRequest | None = None
+    view: View | None = None
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.hold_s <= MAX_HOLD_S:
+            raise ValueError(f"hold_s must be from 0 to {MAX_HOLD_S:.0f}")
+        if self.kind is not TaskKind.PHOTO and (self.views is not None or self.view is not None):
+            raise ValueError("only photos have views")
+
+
+def default_task(asset_kind: str | None, *, is_path: bool) -> Task:
+    """The task of a target for which the operator names none.
+
+    Towers and bridges have details to photograph; a line or railway flown end to end is filmed without stopping, a single point on it
+    is looked at; over a bare position the UAV hovers.
+    """
+    if is_path:
+        return Task(TaskKind.LOOK, 0.0)
+    if asset_kind in {"tower", "bridge"}:
+        return Task(TaskKind.PHOTO, DEFAULT_HOLD_S[TaskKind.PHOTO])
+    if asset_kind is None:
+        return Task(TaskKind.HOLD, 10.0)
+    return Task(TaskKind.LOOK, DEFAULT_HOLD_S[TaskKind.LOOK])
+
+
+def task_to_json(task: Task) -> dict[str, Any]:
+    """Return kind and hold_s; `views` and `view` where there are any, as documents that are older have neither."""
+    value: dict[str, Any] = {"kind": task.kind.value, "hold_s": task.hold_s}
+    if task.views is not None:
+        value["views"] = views_to_json(task.views)
+    if task.view is not None:
+        view = task.view
+        value["view"] = {
+            "yaw_deg": view.yaw_deg, "pitch_deg": view.pitch_deg, "distance_m": view.distance_m,
+            "focal_length_mm": view.focal_length_mm, "clearance_m": view.clearance_m,
+        }  # fmt: skip
+    return value
+
+
+def task_from_json(value: Mapping[str, Any] | None) -> Task | None:
+    if not value:
+        return None
+    views, view = value.get("views"), value.get("view")
+    return Task(
+        TaskKind(value["kind"]),
+        float(value["hold_s"]),
+        None if views is None else views_from_json(views),
+        None if view is None else View(**view),
+    )
+
+
+def views_to_json(views: ViewsRequest) -> dict[str, Any]:
+    return {"gsd_mm": round(views.gsd_m * MM_PER_M, 6), "min_height_m": views.min_height_m, "camera": camera_to_json(views.camera)}
+
+
+def views_from_json(value: Mapping[str, Any]) -> ViewsRequest:
+    return ViewsRequest(value["gsd_mm"] / MM_PER_M, camera_from_json(value["camera"]), value["min_height_m"])
