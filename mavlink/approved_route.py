@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from inspection.geodesy import LonLat
@@ -10,6 +11,16 @@ from planning.trajectory.waypoints import WaypointKind
 
 RETURN, LAND, HOVER, BASE = "return", "land", "hover", "base"
 END_ACTIONS = (RETURN, LAND, HOVER, BASE)
+
+
+def photo_clearances_m(waypoints: Sequence["FrozenWaypoint"]) -> dict[int, float]:
+    """What the flights through photos keep from wires and supports [m], by the sequences of the waypoints that their legs lead to."""
+    of_target = {own.target: own.task.view.clearance_m for own in waypoints if own.task is not None and own.task.view is not None}
+    return {
+        after.sequence: of_target[after.target]
+        for before, after in pairwise(waypoints)
+        if after.target == before.target and after.target in of_target
+    }
 
 
 class NotARoute(ValueError):

@@ -11,8 +11,8 @@ from inspection.geodesy.local_frame import LocalFrame
 from planning.task import View
 from planning.views.detail_views import DetailPlan
 from planning.views.solids import FloatArray
+from planning.views.view_flight import NO_PHOTO, SAME_PLACE_M
 from planning.views.visibility import BoolArray
-from planning.views.view_flight import NO_PHOTO
 
 SPEED_MPS = 4.0  # from photo to photo, beside wires
 BEND_HOLD_S = 1.0  # where the flight bends: the UAV stops, so that it does not cut the corner
@@ -72,6 +72,8 @@ def photo_flight(
     points, photos = [flight.position[0]], [int(flight.photo[0])]
     stops = [True]
     for (start, end), photo in zip(pairwise(flight.position), flight.photo[1:].tolist(), strict=True):
+        if photo == NO_PHOTO and np.linalg.norm(end - start) < SAME_PLACE_M:
+            continue
         bends = _ground_bends(start, end, ground_m)
         points += [*bends, end]
         photos += [NO_PHOTO] * len(bends) + [photo]

@@ -1,7 +1,7 @@
 """Assesses a rehearsed mission under one set of conditions against the limits: a level, and its reasons."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,15 @@ from simulation.assessment.closest_approach import ClosestApproach, closest_appr
 from simulation.assessment.flown import AssessedRoute, FloatArray, TrackEnding
 from simulation.assessment.following import AssessedVisit, Following, following_of, visits_of
 from simulation.assessment.limits import AssessmentFinding, AssessmentLimits, Facts, Level, level_of
-from simulation.assessment.obstacles import Approach, Standing, ZoneApproach, lowest_of, nearest_standing, zone_approaches
+from simulation.assessment.obstacles import (
+    Approach,
+    Standing,
+    StandingApproaches,
+    ZoneApproach,
+    lowest_of,
+    nearest_standing,
+    zone_approaches,
+)
 
 APPROACH_STEP_S = 0.2
 AS_PLANNED = 1.05  # factor on the planned energy
@@ -163,8 +171,8 @@ def _of_route(
         flown_s=flown_s,
         planned_s=route.planned_s,
         zones=tuple(zones[:NEAR_ZONES]),
-        lowest=lowest,
-        obstacle=min((one for one in standing if one is not None), key=lambda one: one.away_m, default=None),
+        lowest=min(lowest, key=lambda one: one.away_m, default=None),
+        obstacle=min(standing, key=lambda one: one.away_m, default=None),
         widest_waypoint_m=max(passed_m, default=None),
         targets=tuple(by_target),
     )
@@ -300,41 +308,43 @@ def _zone_finding(route: AssessedRoute, zone: ZoneApproach, limits: AssessmentLi
 
 def _nearest(
     route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings, limits: AssessmentLimits
-) -> tuple[Approach | None, tuple[Approach | None, Approach | None]]:
-    """Return the lowest height, and the closest approaches to obstacles: en route, and in the columns of take-off and landing."""
+) -> tuple[list[Approach], StandingApproaches]:
+    """Return the lowest heights, on the way and in flights through photos, and the closest approaches to obstacles."""
 
-    def nearer(one: Approach | None, other: Approach | None) -> Approach | None:
-        return min((known for known in (one, other) if known is not None), key=lambda known: known.away_m, default=None)
+    def nearest(found: Iterable[Approach | None]) -> Approach | None:
+        return min((one for one in found if one is not None), key=lambda one: one.away_m - (one.kept_m or 0.0), default=None)
 
-    lowest: Approach | None = None
-    on_way: Approach | None = None
-    in_column: Approach | None = None
-    for flown, ground_m in zip(route.flights, grounds, strict=True):
-        if flown.track is None or not len(flown.track):
+    flown = [(own, ground_m) for own, ground_m in zip(route.flights, grounds, strict=True) if own.track is not None and len(own.track)]
+    column_m = limits.column_m
+    lowest = [nearest(lowest_of(own, ground_m, column_m=column_m, photos=photos) for own, ground_m in flown) for photos in (False, True)]
+    standing = [nearest_standing(own, around.standing, column_m=column_m) for own, _ in flown]
+    return [one for one in lowest if one is not None], StandingApproaches(
+        nearest(own.way for own in standing), nearest(own.column for own in standing), nearest(own.photos for own in standing)
+    )
+
+
+def _of_ground(route: AssessedRoute, lowest: Sequence[Approach], limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
+    for one in lowest:
+        warn_m, fail_m = limits.ground_warn_m, limits.ground_fail_m
+        if one.kept_m is not None:
+            warn_m, fail_m = limits.photo_ground_warn_m, limits.photo_ground_fail_m
+        if one.away_m >= warn_m:
             continue
-        lowest = nearer(lowest, lowest_of(flown, ground_m, column_m=limits.column_m))
-        way, column = nearest_standing(flown, around.standing, column_m=limits.column_m)
-        on_way, in_column = nearer(on_way, way), nearer(in_column, column)
-    return lowest, (on_way, in_column)
+        level = Level.FAIL if one.away_m < fail_m else Level.WARNINGS
+        limit_m = fail_m if level is Level.FAIL else warn_m
+        facts: Facts = {"name": route.name, "metres": one.away_m, "limit_m": limit_m, "waypoint": one.waypoint, "at_s": one.t_s}
+        yield AssessmentFinding(level, "low", route.uav, facts=facts)
 
 
-def _of_ground(route: AssessedRoute, lowest: Approach | None, limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
-    if lowest is None or lowest.away_m >= limits.ground_warn_m:
-        return
-    level = Level.FAIL if lowest.away_m < limits.ground_fail_m else Level.WARNINGS
-    limit_m = limits.ground_fail_m if level is Level.FAIL else limits.ground_warn_m
-    facts: Facts = {"name": route.name, "metres": lowest.away_m, "limit_m": limit_m, "waypoint": lowest.waypoint, "at_s": lowest.t_s}
-    yield AssessmentFinding(level, "low", route.uav, facts=facts)
-
-
-def _of_standing(
-    route: AssessedRoute, standing: tuple[Approach | None, Approach | None], limits: AssessmentLimits
-) -> Iterator[AssessmentFinding]:
+def _of_standing(route: AssessedRoute, standing: StandingApproaches, limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
     for one in standing:
-        if one is None or one.away_m >= limits.obstacle_warn_m:
+        warn_m, fail_m = limits.obstacle_warn_m, limits.obstacle_fail_m
+        if one.kept_m is not None:
+            warn_m = fail_m = one.kept_m
+        if one.away_m >= warn_m:
             continue
-        level = Level.FAIL if one.away_m < limits.obstacle_fail_m and not one.is_column else Level.WARNINGS
-        limit_m = limits.obstacle_fail_m if level is Level.FAIL else limits.obstacle_warn_m
+        level = Level.FAIL if one.away_m < fail_m and not one.is_column else Level.WARNINGS
+        limit_m = fail_m if level is Level.FAIL else warn_m
         facts: Facts = {"name": route.name, "metres": one.away_m, "limit_m": limit_m, "waypoint": one.waypoint, "at_s": one.t_s}
         yield AssessmentFinding(level, "obstacle-column" if one.is_column else "obstacle", route.uav, facts=facts)
 

@@ -27,6 +27,8 @@ class AssessmentLimits:
     obstacle_fail_m: float = 5.0
     ground_warn_m: float = 10.0
     ground_fail_m: float = 5.0
+    photo_ground_warn_m: float = 3.0
+    photo_ground_fail_m: float = 1.5
     apart_fail_m: float = 10.0
     apart_warn_beside_m: float = 30.0
     apart_warn_height_m: float = 15.0
@@ -64,6 +66,8 @@ SOURCES: Mapping[str, str] = {
     "obstacle_fail_m": "arms of a tower beside its middle",
     "ground_warn_m": "SPANWISE_CLEARANCE_M less 5 m",
     "ground_fail_m": "trees, and errors of terrain models",
+    "photo_ground_warn_m": "usual least height of photos less 1 m",
+    "photo_ground_fail_m": "errors of terrain models",
     "apart_fail_m": "errors of two satellite positions",
     "apart_warn_beside_m": "SPANWISE_SEPARATION_LATERAL_M",
     "apart_warn_height_m": "SPANWISE_SEPARATION_VERTICAL_M",

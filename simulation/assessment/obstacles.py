@@ -1,7 +1,8 @@
 """Closest approach of a flight to obstacles and zones."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -9,6 +10,7 @@ import shapely
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.zones.reach import HeightLimits, ZoneTable
+from mavlink.approved_route import photo_clearances_m
 from simulation.assessment.flown import BoolArray, FloatArray, FlownFlight, FlownTrack
 
 LOOK_M = 60.0  # horizontal; approaches beyond it are not reported
@@ -32,32 +34,65 @@ class Standing:
 
 @dataclass(frozen=True)
 class Approach:
-    """The closest moment: distance, time, and the waypoint flown to. is_column: above its take-off or landing place."""
+    """The closest moment: distance, time, and the waypoint flown to.
+
+    is_column: above its take-off or landing place. kept_m: what a flight through photos has to keep there.
+    """
 
     away_m: float
     t_s: float
     waypoint: int
     position: LonLat
     is_column: bool = False
+    kept_m: float | None = None
 
 
-def lowest_of(flown: FlownFlight, ground_amsl_m: FloatArray, *, column_m: float) -> Approach | None:
-    """Return the lowest height above ground outside the columns of take-off and landing; None if the ground is unknown there."""
+@dataclass(frozen=True)
+class StandingApproaches:
+    """The closest approaches to a tower or wire: en route, above the places of take-off and landing, and in flights through photos.
+
+    Of the latter it is where most is missing of what they have to keep. None beyond LOOK_M, or where nothing of the kind is flown.
+    """
+
+    way: Approach | None = None
+    column: Approach | None = None
+    photos: Approach | None = None
+
+    def __iter__(self) -> Iterator[Approach]:
+        return (one for one in (self.way, self.column, self.photos) if one is not None)
+
+
+def lowest_of(flown: FlownFlight, ground_amsl_m: FloatArray, *, column_m: float, photos: bool) -> Approach | None:
+    """Return the lowest height above ground outside the columns of take-off and landing; None if the ground is unknown there.
+
+    photos: of flights through photos, else of all but these.
+    """
     track = flown.track
     if track is None:
         return None
-    away_m = np.where(track.is_in_air & ~in_columns(flown, column_m), track.amsl_m - ground_amsl_m, np.nan)
-    return None if np.isnan(away_m).all() else _approach(track, int(np.nanargmin(away_m)), float(np.nanmin(away_m)), is_column=False)
+    kept_m = photo_clearances_of(flown, track)
+    own = track.is_in_air & ~in_columns(flown, column_m) & (np.isnan(kept_m) != photos)
+    away_m = np.where(own, track.amsl_m - ground_amsl_m, np.nan)
+    if np.isnan(away_m).all():
+        return None
+    row = int(np.nanargmin(away_m))
+    return replace(_approach(track, row, float(away_m[row])), kept_m=float(kept_m[row]) if photos else None)
 
 
-def nearest_standing(flown: FlownFlight, standing: Standing, *, column_m: float) -> tuple[Approach | None, Approach | None]:
-    """Return the closest approaches to a tower or wire, en route and in the columns of take-off and landing; None beyond LOOK_M.
+def photo_clearances_of(flown: FlownFlight, track: FlownTrack) -> FloatArray:
+    """Return (n,) what the flight through photos keeps from wires and supports at each moment; NaN outside of these."""
+    kept_m = photo_clearances_m(flown.flight.waypoints)
+    return np.array([kept_m.get(waypoint, np.nan) for waypoint in track.waypoint.tolist()], dtype=np.float64)
+
+
+def nearest_standing(flown: FlownFlight, standing: Standing, *, column_m: float) -> StandingApproaches:
+    """Return the closest approaches to towers and wires.
 
     As sags are unknown, an obstacle is a wall from the ground to its top: above it the vertical distance counts, beside it the horizontal.
     """
     track = flown.track
     if track is None or not len(standing) or not track.is_in_air.any():
-        return None, None
+        return StandingApproaches()
     rows = np.flatnonzero(track.is_in_air)
     frame = LocalFrame.around(*track.position[rows].mean(axis=0).tolist())
     flat, start, end = (frame.to_metres(places) for places in (track.position[rows], standing.start, standing.end))
@@ -65,19 +100,27 @@ def nearest_standing(flown: FlownFlight, standing: Standing, *, column_m: float)
     low, high = np.minimum(start, end), np.maximum(start, end)
     near = np.flatnonzero((low[:, 0] <= east) & (high[:, 0] >= west) & (low[:, 1] <= north) & (high[:, 1] >= south))
     if not len(near):
-        return None, None
+        return StandingApproaches()
     lines = np.array(shapely.linestrings(np.stack([start[near], end[near]], axis=1)), dtype=object).reshape(-1)
     moment, span = shapely.STRtree(lines).query(shapely.points(flat), predicate="dwithin", distance=LOOK_M)
     if not len(moment):
-        return None, None
+        return StandingApproaches()
     away_m = _from_obstacles(flat[moment], track.amsl_m[rows[moment]], start, end, standing, near[span])
-    is_column = in_columns(flown, column_m)[rows[moment]]
-    found: list[Approach | None] = []
-    for mask, column in ((~is_column, False), (is_column, True)):
-        own = np.where(mask, away_m, math.inf)
+    at = rows[moment]
+    is_column, kept_m = in_columns(flown, column_m)[at], photo_clearances_of(flown, track)[at]
+    is_photo = ~np.isnan(kept_m)
+
+    def nearest(mask: BoolArray, short_m: FloatArray) -> Approach | None:
+        own = np.where(mask, short_m, math.inf)
         best = int(np.argmin(own))
-        found.append(None if math.isinf(own[best]) else _approach(track, int(rows[moment[best]]), float(own[best]), is_column=column))
-    return found[0], found[1]
+        return None if math.isinf(own[best]) else _approach(track, int(at[best]), float(away_m[best]))
+
+    way, column, photo = nearest(~is_column & ~is_photo, away_m), nearest(is_column & ~is_photo, away_m), nearest(is_photo, away_m - kept_m)
+    return StandingApproaches(
+        way,
+        None if column is None else replace(column, is_column=True),
+        None if photo is None else replace(photo, kept_m=photo_clearances_m(flown.flight.waypoints)[photo.waypoint]),
+    )
 
 
 def in_columns(flown: FlownFlight, column_m: float) -> BoolArray:
@@ -107,9 +150,9 @@ def _from_obstacles(
     return away_m
 
 
-def _approach(track: FlownTrack, row: int, away_m: float, *, is_column: bool) -> Approach:
+def _approach(track: FlownTrack, row: int, away_m: float) -> Approach:
     lon, lat = track.position[row].tolist()
-    return Approach(away_m, float(track.t_s[row]), int(track.waypoint[row]), LonLat(lon, lat), is_column)
+    return Approach(away_m, float(track.t_s[row]), int(track.waypoint[row]), LonLat(lon, lat))
 
 
 NEAR_DEG = 0.02  # some 2 km: zones beyond it are not reported

@@ -36,6 +36,8 @@ LIMITS = {
     "obstacle_fail_m": gettext_noop("from towers and wires, fail"),
     "ground_warn_m": gettext_noop("above the ground, warning"),
     "ground_fail_m": gettext_noop("above the ground, fail"),
+    "photo_ground_warn_m": gettext_noop("above the ground on photo flights"),
+    "photo_ground_fail_m": gettext_noop("above the ground on photo flights, fail"),
     "apart_fail_m": gettext_noop("between UAVs, fail"),
     "apart_warn_beside_m": gettext_noop("between UAVs across the ground, warning"),
     "apart_warn_height_m": gettext_noop("between UAVs in height, warning"),
@@ -54,6 +56,8 @@ SOURCES = (
     gettext_noop("SPANWISE_CLEARANCE_M less 5 m"),
     gettext_noop("arms of a tower beside its middle"),
     gettext_noop("trees, and errors of terrain models"),
+    gettext_noop("usual least height of photos less 1 m"),
+    gettext_noop("errors of terrain models"),
     gettext_noop("errors of two satellite positions"),
     gettext_noop("where a UAV takes off and lands is its operator's choice"),
 )

@@ -5,6 +5,7 @@ It is written in a canonical form, whose SHA-256 names it. Everything sent to a 
 
 import hashlib
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,15 @@ from inspection.models import Asset
 from inspection.selectors import ground_revision, terrain_dataset_version
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
-from mavlink.approved_route import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
+from mavlink.approved_route import (
+    FrozenRoute,
+    FrozenWaypoint,
+    NotARoute,
+    TakeOff,
+    flight_to_json,
+    photo_clearances_m,
+    route_to_json,
+)
 from mavlink.fence import fence_of, rally_items
 from mavlink.intermediate_waypoints import with_points_between
 from mavlink.mission_items import CannotBeFlown, flight_loads
@@ -31,6 +40,7 @@ from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.request import EndAction, lost_link_from_json, lost_link_to_json, moment_to_json
 from planning.task import task_from_json
 from planning.trajectory.waypoints import WaypointKind
+from planning.views.photo_flight import SPEED_MPS
 
 COORDINATE_DIGITS = 7  # about a centimetre
 VERSION = 1
@@ -123,12 +133,15 @@ def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
     if uav.home is not None:
         take_off = TakeOff(LonLat(*uav.home.coords[:2]), uav.home_amsl_m)
     sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
+    frozen = tuple(_waypoint(waypoint, sequence_of) for waypoint in waypoints)
+    photo_legs = photo_clearances_m(frozen)
+    frozen = tuple(replace(own, speed_mps=SPEED_MPS) if own.sequence in photo_legs and own.speed_mps is None else own for own in frozen)
     return FrozenRoute(
         uav=uav.name,
         take_off=take_off,
         cruise_speed_mps=uav.cruise_speed_mps,
         end_action=str(EndAction.RETURN if mission.return_to_start else EndAction(uav.end_action)),
-        waypoints=tuple(_waypoint(waypoint, sequence_of) for waypoint in waypoints),
+        waypoints=frozen,
         charging_stops=tuple(stop["waypoint"] for stop in route.charging),
         departs_s=route.departs_s,
         begun_by=route.begun_by,
