@@ -126,17 +126,19 @@ def _timing(
     count, agl_m, own = len(flown.position), flown.agl_m, air.own
     arrival_s, used_j = np.empty(count), np.empty(count)
     leg_m, leg_s, leg_j, density = _legs(flown, air, lands)
-    turning = np.zeros(len(leg_s))
+    turning, brake_s = np.zeros(len(leg_s)), np.full(len(leg_s) + 1, own.brake_s)  # as fast as each leg, the last for none behind
+    for place in range(len(flown.wanted_mps)):
+        brake_s[place] = own.brake_s * min(flown.wanted_mps[place] / own.cruise_mps, 1.0)
     if count > 1 and np.isfinite(leg_s).all():
         is_stop = hold_s > 0.0
         is_stop[0], is_stop[-1] = True, is_stop[-1] or lands
-        turning[1:count] = turning_s(leg_m[1:count], leg_s[1:count], is_stop, own.brake_s, manoeuvres[0], manoeuvres[1])
+        turning[1:count] = turning_s(leg_m[1:count], leg_s[1:count], is_stop, brake_s[1:count], manoeuvres[0], manoeuvres[1])
     now_s = now_j = 0.0
     for place in range(len(leg_s)):
         now_s, now_j = now_s + leg_s[place], now_j + leg_j[place]
         beside_s = turning[place]
         if place < count and hold_s[place] > 0.0:
-            beside_s += own.brake_s
+            beside_s += brake_s[place]
         if place == 0:
             seconds, joules = take_off_taken(agl_m[0], density[0], air)
             now_s, now_j = now_s + seconds, now_j + joules
@@ -146,7 +148,7 @@ def _timing(
         if place < count:
             arrival_s[place], used_j[place] = now_s, now_j
             if hold_s[place] > 0.0:
-                stays_s = own.settle_s + hold_s[place] + own.brake_s
+                stays_s = own.settle_s + hold_s[place] + brake_s[place + 1]
                 seconds, joules = hold_taken(stays_s, agl_m[place], density[place], air)
                 now_s, now_j = now_s + seconds, now_j + joules
         else:

@@ -17,12 +17,13 @@ MIN_LEG_M = 0.05  # what is shorter is one place
 
 @njit(cache=True, nogil=True)
 def turning_s(
-    leg_m: FloatArray, leg_s: FloatArray, is_stop: BoolArray, brake_s: float, acceleration_mps2: float, corner_mps2: float
+    leg_m: FloatArray, leg_s: FloatArray, is_stop: BoolArray, brake_s: FloatArray, acceleration_mps2: float, corner_mps2: float
 ) -> FloatArray:
     """Seconds that each leg takes beside its `leg_s` at one speed, (n,), at least 0.
 
     leg_m (n, 3) is how far each leg leads to east, north and up; leg_s (n,) are above 0 for legs with a length, and finite. is_stop
-    (n + 1,) tells of each end of a leg whether the UAV stands there. `brake_s`, for which that already counts on either side, is taken off.
+    (n + 1,) tells of each end of a leg whether the UAV stands there. `brake_s` (n,), for which that already counts at either end
+    of a leg, is taken off.
     """
     count = len(leg_s)
     extra_s = np.zeros(count)
@@ -52,8 +53,10 @@ def turning_s(
         extra_s[leg] = max(seconds - leg_s[leg], 0.0)
     for end in range(count + 1):
         if is_stop[end]:
-            _take_off_counted(extra_s, leg_m, end - 1, -1, brake_s)
-            _take_off_counted(extra_s, leg_m, end, 1, brake_s)
+            if end > 0:
+                _take_off_counted(extra_s, leg_m, end - 1, -1, brake_s[end - 1])
+            if end < count:
+                _take_off_counted(extra_s, leg_m, end, 1, brake_s[end])
     return extra_s
 
 

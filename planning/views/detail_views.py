@@ -96,11 +96,12 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
 
 @dataclass(frozen=True)
 class DetailSpeeds:
-    """How a UAV flies from photo to photo: m/s along and up or down, and seconds at each photo to stop, turn, settle and take it."""
+    """How a UAV flies from photo to photo: m/s along and up or down, and what a stop for a photo or at a bend takes [s]."""
 
     along_mps: float = 4.0
-    vertical_mps: float = 2.0
-    photo_s: float = 4.0
+    vertical_mps: float = 2.5
+    photo_s: float = 6.5  # slowing down, standing still, the photo, speeding up
+    bend_s: float = 4.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +154,8 @@ def _distance_m(poses: Poses, caster: RayCaster) -> FloatArray:
 def _seconds(position: FloatArray, photos: int, speeds: DetailSpeeds) -> float:
     change = np.abs(np.diff(position, axis=0))
     along_s = np.hypot(change[:, 0], change[:, 1]) / speeds.along_mps
-    return float(np.maximum(along_s, change[:, 2] / speeds.vertical_mps).sum()) + photos * speeds.photo_s
+    stops_s = photos * speeds.photo_s + (len(position) - photos) * speeds.bend_s
+    return float(np.maximum(along_s, change[:, 2] / speeds.vertical_mps).sum()) + stops_s
 
 
 def candidate_positions(solid: Solid, keep_out: KeepOut, farthest_m: float) -> FloatArray:

@@ -20,7 +20,7 @@ def turning(*legs: Leg, speed_mps: float, stands: tuple[int, ...] = (), rules: M
     leg_m = np.array(legs, dtype=np.float64)
     is_stop = np.isin(np.arange(len(legs) + 1), [0, *stands])
     brake_s = speed_mps / (2.0 * rules.acceleration_mps2)
-    found = turning_s(leg_m, seconds(legs, speed_mps), is_stop, brake_s, rules.acceleration_mps2, rules.corner_mps2)
+    found = turning_s(leg_m, seconds(legs, speed_mps), is_stop, np.full(len(leg_m), brake_s), rules.acceleration_mps2, rules.corner_mps2)
     return [float(one) for one in found]
 
 
@@ -62,7 +62,7 @@ def test_between_two_near_corners_it_does_not_come_to_its_speed() -> None:
 
 def test_a_leg_that_is_flown_slower_is_slowed_down_to() -> None:
     leg_m, leg_s = np.array([[300.0, 0.0, 0.0], [300.0, 0.0, 0.0]]), np.array([300.0 / 14.0, 300.0 / 4.0])
-    found = turning_s(leg_m, leg_s, np.array([True, False, False]), 3.5, 2.0, 4.0)
+    found = turning_s(leg_m, leg_s, np.array([True, False, False]), np.full(2, 3.5), 2.0, 4.0)
     assert found == pytest.approx([(14 - 4) ** 2 / (2 * 2 * 14), 0])
 
 
