@@ -4,13 +4,17 @@ import json
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.approved_route import BASE, HOVER, LAND, RETURN, NotARoute, route_from_json, route_to_json
-from mavlink.mission_items import CannotBeFlown, flight_loads
+from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import BASE, HOVER, LAND, RETURN, NotARoute, photo_clearances_m, route_from_json, route_to_json
+from mavlink.mission_items import CannotBeFlown, aim_point, flight_loads
 from mavlink.vehicle_plan import FlightLoad, MissionItem, load_from_json, load_to_json
-from planning.task import Task, TaskKind
+from planning.task import Task, TaskKind, View
 from planning.trajectory.waypoints import WaypointKind
 from tests.mavlink.routes import START, route, start_and_end, waypoint
 
@@ -149,3 +153,68 @@ def test_load_is_the_same_after_json_with_nan_left_to_the_autopilot():
     assert again.content_sha256 == load.content_sha256
     assert math.isnan(again.mission[0].parameters[3])
     assert FlightLoad(load.mission[:-1]).content_sha256 != load.content_sha256
+
+
+# Photos with a view.
+
+
+def view(yaw_deg: float = 90.0, pitch_deg: float = -30.0, distance_m: float = 20.0) -> View:
+    return View(yaw_deg, pitch_deg, distance_m, 21.0, 8.9)
+
+
+def photographed(*views: View) -> tuple[MissionItem, ...]:
+    photos = [
+        waypoint(2 + number, WaypointKind.PASS, task=Task(TaskKind.PHOTO, 3.0, view=own), target=0, speed_mps=4.0, relative_m=40.0)
+        for number, own in enumerate(views)
+    ]
+    over = waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.HOLD, 1.0), target=0)
+    back = waypoint(2 + len(views), WaypointKind.PASS, target=0, speed_mps=4.0)
+    (load,) = flight_loads(start_and_end(over, *photos, back))
+    return load.mission
+
+
+def test_an_aimed_photo_looks_before_it_flies_and_stands_still_for_the_photo() -> None:
+    mission = photographed(view(), view(180.0))
+    assert commands(mission[5:13]) == [LOOK_AT, WAYPOINT, PHOTO, DELAY, LOOK_AT, WAYPOINT, PHOTO, DELAY]
+    assert mission[13].command == LOOK_AHEAD, "after the last photo of the target"
+    assert [item.command for item in mission].count(LOOK_AHEAD) == 1
+    photos = [item for item in mission if item.command == PHOTO]
+    assert [item.parameters for item in photos] == [(0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 2.0)], "numbered: a repeated item takes no second"
+    assert [item.parameters[0] for item in mission if item.command == DELAY] == [1.0, 1.0]
+
+
+def test_the_aim_is_the_place_that_the_photo_shows() -> None:
+    (aim,) = [item for item in photographed(view(90.0, -30.0, 20.0)) if item.command == LOOK_AT]
+    east_m, north_m = LocalFrame.around(START.lon + 0.002, START.lat).to_metres(
+        np.array([[aim.longitude_e7 / 1e7, aim.latitude_e7 / 1e7]])
+    )[0]
+    assert (east_m, north_m) == pytest.approx((20.0 * math.cos(math.radians(30.0)), 0.0), abs=0.02)
+    assert aim.altitude_m == pytest.approx(40.0 - 10.0, abs=0.01)
+    (down,) = [item for item in photographed(view(0.0, -80.0, 100.0)) if item.command == LOOK_AT]
+    assert down.altitude_m == pytest.approx(40.0 - 98.48, abs=0.01), "below the take-off, where the ground falls away"
+
+
+@given(st.floats(0.0, 360.0), st.floats(-80.0, 60.0), st.floats(1.0, 80.0))
+def test_seen_from_the_waypoint_the_aim_has_the_views_angles(yaw_deg: float, pitch_deg: float, distance_m: float) -> None:
+    here = waypoint(1, WaypointKind.PASS, relative_m=40.0)
+    place, height_m = aim_point(here, view(yaw_deg, pitch_deg, distance_m))
+    east_m, north_m = LocalFrame.around(*here.position).to_metres(np.array([place]))[0]
+    up_m = height_m - 40.0
+    assert math.hypot(east_m, north_m, up_m) == pytest.approx(distance_m, rel=1e-6)
+    assert math.degrees(math.atan2(up_m, math.hypot(east_m, north_m))) == pytest.approx(pitch_deg, abs=1e-6)
+    turned_deg = math.degrees(math.atan2(east_m, north_m)) - yaw_deg
+    assert (turned_deg + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-5)
+
+
+def test_a_route_with_views_comes_back_from_json_and_one_without_names_none() -> None:
+    plain = start_and_end(waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 3.0), target=0))
+    assert set(route_to_json(plain)["waypoints"][1]["task"]) == {"kind", "hold_s"}, "documents and their hashes stay as they were"
+    aimed = start_and_end(waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 3.0, view=view()), target=0))
+    assert route_from_json(json.loads(json.dumps(route_to_json(aimed)))) == aimed
+
+
+def test_the_legs_of_photos_are_those_between_two_waypoints_of_their_target() -> None:
+    aimed = waypoint(2, WaypointKind.PASS, task=Task(TaskKind.PHOTO, 3.0, view=view()), target=0)
+    other = waypoint(4, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 3.0), target=1)
+    points = [waypoint(1, WaypointKind.TARGET, target=0), aimed, waypoint(3, WaypointKind.PASS, target=0), other]
+    assert photo_clearances_m(points) == {2: 8.9, 3: 8.9}

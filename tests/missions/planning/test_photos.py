@@ -1,0 +1,240 @@
+"""Missions with targets of which every part is photographed: planned, stored, approved, refused."""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+import pytest
+from django.core.cache import cache
+from django.test import Client
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.network.spans import spans_of
+from inspection.selectors.planning import planning_read
+from inspection.services import import_terrain
+from missions.models import Mission, Uav, UavType
+from missions.selectors import photo_flights
+from missions.selectors.missions import mission_of_organisation
+from missions.services.approval.document import approval_document, frozen_route
+from planning.views.camera import camera_to_json
+from planning.views.catalogue import catalogue
+from tests.accounts.users import a_user, client_of
+from tests.inspection import ground
+from tests.inspection.importers.terrain.tiffs import write_geotiff
+from tests.missions.api import post
+from tests.missions.worlds import World, power_line, world, zone_around
+from workspace.models import Organisation, Role
+
+pytestmark = pytest.mark.django_db
+
+CAMERA = catalogue()["dji-m30t-zoom"].camera
+VIEWS = {"gsd_mm": 4, "camera_key": "dji-m30t-zoom"}
+MASL_M = 100.0
+
+
+@pytest.fixture(autouse=True)
+def _nothing_kept() -> None:
+    cache.clear()
+
+
+@pytest.fixture
+def here(tmp_path: Path) -> World:
+    found = world(height_m=30.0)
+    terrain(tmp_path)
+    return found
+
+
+@pytest.fixture
+def client() -> Client:
+    return client_of(a_user(Role.OPERATOR))
+
+
+def terrain(folder: Path, *, origin: tuple[float, float] = (9.9, 56.15)) -> None:
+    import_terrain(path=write_geotiff(folder / "hills.tif", np.full((300, 300), MASL_M, dtype="f4"), srid=9707, origin=origin))
+
+
+def tern(**of_type: Any) -> Uav:
+    kind = UavType.objects.create(name="Tern", cruise_speed_mps=12.0, max_range_m=20_000.0, cameras=[camera_to_json(CAMERA)], **of_type)
+    organisation = Organisation.objects.first()
+    return Uav.objects.create(organisation=organisation, name="Tern", uav_type=kind, location="POINT(10.001 55.995)", is_simulated=True)
+
+
+def body(*targets: dict[str, Any], uav: Uav | None = None) -> dict[str, Any]:
+    return {"name": "Photos", "plan": True, "return_to_start": True, "uavs": [{"id": (uav or tern()).pk}], "targets": list(targets)}
+
+
+def photos_of(asset: Any, **wishes: Any) -> dict[str, Any]:
+    return {"asset": asset.pk, "task": {"kind": "photo", "views": VIEWS | wishes}}
+
+
+def made(client: Client, asked: dict[str, Any]) -> dict[str, Any]:
+    response = post(client, "missions", asked)
+    assert response.status_code == 201, response.content
+    return response.json()
+
+
+def photos(plan: dict[str, Any], uav: int = 0) -> list[dict[str, Any]]:
+    return [row for row in plan["routes"][uav]["waypoints"] if row["task"] and row["task"].get("view")]
+
+
+def unassigned(mission: dict[str, Any]) -> str:
+    (item,) = mission["plan"]["unassigned"]
+    return f"{item['reason']}: {item['why'][0]['code']}"
+
+
+def test_every_photo_is_a_waypoint_of_the_route(here: World, client: Client) -> None:
+    mission = made(client, body(photos_of(here.towers[2]), {"asset": here.towers[4].pk}))
+    plan = mission["plan"]
+    assert plan["unassigned"] == []
+    taken = photos(plan)
+    assert len(taken) >= 4
+    assert {row["target"] for row in taken} == {0}
+    assert all(row["altitude_amsl_m"] == pytest.approx(MASL_M + row["altitude_agl_m"], abs=0.02) for row in taken)
+    assert min(row["altitude_agl_m"] for row in taken) >= 4.0 - 0.01
+    frame = LocalFrame.around(*here.towers[2].centre.coords)
+    for row in taken:
+        _east_m, north_m = frame.to_metres(np.array([row["position"]]))[0]
+        view = row["task"]["view"]
+        assert abs(north_m) >= view["clearance_m"] or row["altitude_agl_m"] >= 30.0 + view["clearance_m"], "beside the line, or over it"
+    assert [row["kind"] for row in plan["routes"][0]["waypoints"]].count("target") == 2
+    stored = client.get(f"/api/v1/missions/{mission['id']}").json()
+    assert [row["task"] for row in stored["plan"]["routes"][0]["waypoints"]] == [row["task"] for row in plan["routes"][0]["waypoints"]]
+    task = stored["targets"][0]["task"]
+    assert (task["kind"], task["hold_s"], task["views"]["gsd_mm"], task["views"]["camera"]["name"]) == ("photo", 3.0, 4.0, CAMERA.name)
+    assert stored["targets"][0]["sensor"] == CAMERA.name
+
+
+def test_what_is_flown_is_slow_beside_wires_and_aims(here: World, client: Client) -> None:
+    answer = made(client, body(photos_of(here.towers[2])))
+    mission = mission_of_organisation(Organisation.objects.get(), answer["id"])
+    frozen = frozen_route(mission.routes.get(), mission)
+    slow = {waypoint.sequence for waypoint in frozen.waypoints if waypoint.speed_mps == 4.0}
+    taken = {waypoint.sequence for waypoint in frozen.waypoints if waypoint.task and waypoint.task.view}
+    assert taken < slow
+    assert len(slow) < len(frozen.waypoints) - 1, "on the way it flies as fast as else"
+    items = approval_document(mission)["routes"][0]["flights"][0]["items"]["mission"]
+    assert [item[0] for item in items].count(2000) == len(taken), "IMAGE_START_CAPTURE"
+    assert [item[0] for item in items].count(195) == len(taken), "DO_SET_ROI_LOCATION"
+    assert not answer["plan"]["routes"][0]["speeds_by_hand"]
+
+
+def test_photos_are_planned_once_for_the_same_map(here: World, client: Client) -> None:
+    uav, counted = tern(), mock.Mock(wraps=photo_flights.detail_plan)
+    with mock.patch.object(photo_flights, "detail_plan", counted):
+        first = made(client, body(photos_of(here.towers[2]), uav=uav))
+        second = made(client, body(photos_of(here.towers[2]), uav=uav))
+        assert counted.call_count == 1
+        assert photos(first["plan"]) == photos(second["plan"])
+        power_line([ground.tower((10.2, 56.1)), ground.tower((10.204, 56.1))])
+        zone_around((10.3, 56.2))
+        made(client, body(photos_of(here.towers[2]), uav=uav))
+        assert counted.call_count == 2, "another map"
+
+
+def test_a_plan_of_photos_on_the_map_is_the_missions(here: World, client: Client) -> None:
+    plan = post(client, "view-plans", {"asset": here.towers[2].pk} | VIEWS).json()
+    with mock.patch.object(photo_flights, "detail_plan", side_effect=AssertionError("it is kept")):
+        mission = made(client, body(photos_of(here.towers[2])))
+    assert [row["position"] for row in photos(mission["plan"])] == [pytest.approx(own["position"], abs=1e-7) for own in plan["photos"]]
+
+
+def test_without_the_camera_no_uav_takes_them(here: World, client: Client) -> None:
+    uav = tern()
+    UavType.objects.update(cameras=[])
+    assert unassigned(made(client, body(photos_of(here.towers[2]), uav=uav))) == "not_allowed: no_uav_with_sensor"
+
+
+def test_without_terrain_nobody_flies_beside_wires(client: Client) -> None:
+    assert unassigned(made(client, body(photos_of(world(height_m=30.0).towers[2])))) == "no_photos: photos_need_terrain"
+
+
+def test_terrain_that_ends_before_the_start_is_refused(client: Client, tmp_path: Path) -> None:
+    here = world(height_m=30.0)
+    terrain(tmp_path, origin=(10.004, 56.15))
+    response = post(client, "missions", body(photos_of(here.towers[5])))
+    assert response.status_code == 400, "its heights would count from ground that nobody knows"
+    assert "targets.0.task" in response.json()["error"]["details"]
+
+
+def test_a_zone_beside_the_tower_that_only_the_photos_would_meet(here: World, client: Client) -> None:
+    lon, lat = here.towers[2].centre.coords
+    zone_around((lon, lat + 0.00112), half_deg=0.0008)  # from 36 m to the north
+    mission = made(client, body(photos_of(here.towers[2], gsd_mm=2)))
+    assert unassigned(mission) == "inside_zone: photos_meet_zone"
+
+
+def test_a_gsd_that_no_lens_reaches_and_a_bridge_are_named(here: World, client: Client) -> None:
+    uav = tern()
+    fine = made(client, body(photos_of(here.towers[2], gsd_mm=0.1, camera_key="dji-p1-35"), uav=uav))
+    assert unassigned(fine) == "no_photos: photos_none_possible"
+    assert unassigned(made(client, body(photos_of(here.bridge), uav=uav))) == "no_photos: photos_not_a_tower"
+
+
+@pytest.mark.parametrize(
+    ("target", "field"),
+    [
+        ({"task": {"kind": "look", "views": VIEWS}}, "targets.0.task.views"),
+        ({"task": {"kind": "photo", "views": VIEWS | {"gsd_mm": 0}}}, "targets.0.task.views.gsd_mm"),
+        ({"task": {"kind": "photo", "views": {"gsd_mm": 2}}}, "targets.0.task.views.camera"),
+        ({"task": {"kind": "photo", "views": VIEWS}, "sensor": "Lidar"}, "targets.0.sensor"),
+        ({"asset": None, "position": [10.0, 56.0], "task": {"kind": "photo", "views": VIEWS}}, "targets.0.task"),
+    ],
+)
+def test_what_is_wrong_with_photos_is_told_by_field(here: World, client: Client, target: dict[str, Any], field: str) -> None:
+    response = post(client, "missions", body({"asset": here.towers[2].pk} | target))
+    assert response.status_code == 400
+    assert field in response.json()["error"]["details"]
+
+
+def test_a_route_with_photos_is_not_bent_by_hand(here: World, client: Client) -> None:
+    mission = made(client, body(photos_of(here.towers[2])))
+    points = [
+        {"position": row["position"], "altitude_agl_m": row["altitude_agl_m"], "was": place}
+        for place, row in enumerate(mission["plan"]["routes"][0]["waypoints"])
+    ]
+    response = post(client, f"missions/{mission['id']}/routes/0/waypoints/look", {"waypoints": points})
+    assert "planned photos" in str(response.json()), response.json()
+
+
+def test_several_targets_with_photos_are_planned_by_a_job(here: World, client: Client) -> None:
+    response = post(client, "missions", body(*(photos_of(tower) for tower in here.towers[1:4])))
+    assert response.status_code == 202
+
+
+@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.integers(0, 5), st.sampled_from([2.0, 4.0, 8.0]), st.floats(-90.0, 90.0), st.floats(18.0, 70.0))
+def test_no_leg_of_photos_comes_near_any_wire(
+    here: World, client: Client, tower: int, gsd_mm: float, turned_deg: float, beside_m: float
+) -> None:
+    """Against towers and wires of another line beside or across, wherever it is: measured from the stored waypoints."""
+    frame = LocalFrame.around(*here.towers[tower].centre.coords)
+    along = np.array([np.sin(np.radians(turned_deg)), np.cos(np.radians(turned_deg))])
+    across = np.array([along[1], -along[0]])
+    ends = frame.to_degrees(np.array([across * beside_m + along * side for side in (-150.0, 150.0)]))
+    power_line([ground.tower(tuple(end), height_m=35.0) for end in ends.tolist()])
+    zone_around((11.0, 57.0))
+    Uav.objects.all().delete(), UavType.objects.all().delete()
+    mission = made(client, body(photos_of(here.towers[tower], gsd_mm=gsd_mm)))
+    waypoints = mission["plan"]["routes"][0]["waypoints"]
+    taken = photos(mission["plan"])
+    if not taken:
+        assert mission["plan"]["unassigned"], "what is not flown is named"
+        return
+    clearance_m = taken[0]["task"]["view"]["clearance_m"]
+    spans = spans_of(planning_read().ground().network())
+    start, end = frame.to_metres(spans.start), frame.to_metres(spans.end)
+    flown = [row for row in waypoints if row["target"] == 0]
+    places = np.column_stack([frame.to_metres(np.array([row["position"] for row in flown])), [row["altitude_agl_m"] for row in flown]])
+    for one, other in pairwise(places):
+        for share in np.linspace(0.0, 1.0, 25):
+            x, y, z = one + share * (other - one)
+            for a, b, a_m, b_m in zip(start, end, spans.start_height_m, spans.end_height_m, strict=True):
+                length2 = float(((b - a) ** 2).sum())
+                part = 0.0 if length2 == 0.0 else float(np.clip(((np.array([x, y]) - a) @ (b - a)) / length2, 0.0, 1.0))
+                away_m = float(np.hypot(*(np.array([x, y]) - a - part * (b - a))))
+                assert away_m >= clearance_m - 0.3 or z >= a_m + part * (b_m - a_m) + clearance_m - 0.3
+    Mission.objects.all().delete()
