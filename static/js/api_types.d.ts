@@ -7566,9 +7566,10 @@ export interface components {
          *     * `beyond_energy` - beyond_energy
          *     * `wind` - wind
          *     * `most_targets` - most_targets
+         *     * `no_photos` - no_photos
          * @enum {string}
          */
-        TargetExplanationReasonEnum: "asset_gone" | "inside_zone" | "above_height_limit" | "too_far_from_network" | "no_path" | "beyond_range" | "not_with_the_others" | "not_allowed" | "beyond_energy" | "wind" | "most_targets";
+        TargetExplanationReasonEnum: "asset_gone" | "inside_zone" | "above_height_limit" | "too_far_from_network" | "no_path" | "beyond_range" | "not_with_the_others" | "not_allowed" | "beyond_energy" | "wind" | "most_targets" | "no_photos";
         /** @description An asset, a point (`position`) or `stretch` on one, or a bare `position`. */
         TargetInputRequest: {
             /** Format: int64 */
@@ -7629,12 +7630,18 @@ export interface components {
             kind: components["schemas"]["TaskKind"];
             /** Format: double */
             hold_s: number;
+            /** @description of a target of which every part is photographed */
+            views?: components["schemas"]["Views"];
+            /** @description of a waypoint at which one of these photos is taken */
+            view?: components["schemas"]["View"];
         };
-        /** @description Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold. */
+        /** @description Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold; with `views` 3 s at each photo. */
         TaskRequest: {
             kind: components["schemas"]["TaskKind"];
             /** Format: double */
             hold_s?: number;
+            /** @description with photo, of a power tower: photos of every part of it */
+            views?: components["schemas"]["ViewsInputRequest"] | null;
         };
         /**
          * @description * `flat ground assumed` - flat ground assumed
@@ -8411,9 +8418,10 @@ export interface components {
          *     * `beyond_energy` - beyond_energy
          *     * `wind` - wind
          *     * `most_targets` - most_targets
+         *     * `no_photos` - no_photos
          * @enum {string}
          */
-        UnassignedReasonEnum: "no_path" | "inside_zone" | "beyond_range" | "too_far_from_network" | "above_height_limit" | "asset_gone" | "not_allowed" | "beyond_energy" | "wind" | "most_targets";
+        UnassignedReasonEnum: "no_path" | "inside_zone" | "beyond_range" | "too_far_from_network" | "above_height_limit" | "asset_gone" | "not_allowed" | "beyond_energy" | "wind" | "most_targets" | "no_photos";
         UndoRepairRequest: {
             entries: number[];
         };
@@ -8578,6 +8586,31 @@ export interface components {
         VerificationMail: {
             was_mailed: boolean;
         };
+        /** @description How one photo is taken. */
+        View: {
+            /**
+             * Format: double
+             * @description of the camera, from true north, clockwise
+             */
+            yaw_deg: number;
+            /**
+             * Format: double
+             * @description 0 is the horizon, -90 straight down
+             */
+            pitch_deg: number;
+            /**
+             * Format: double
+             * @description along the optical axis to what it shows
+             */
+            distance_m: number;
+            /** Format: double */
+            focal_length_mm: number;
+            /**
+             * Format: double
+             * @description which the flight through these photos keeps from wires and supports
+             */
+            clearance_m: number;
+        };
         ViewCoverage: {
             /** Format: double */
             shown: number;
@@ -8624,10 +8657,8 @@ export interface components {
             /** @description no-fly zones that the flight would meet at some time: it cannot be flown then */
             zones: components["schemas"]["ViewPlanZone"][];
         };
-        /** @description Which tower, with which camera, and how fine. */
+        /** @description Photos of every part: with which camera, and how fine. */
         ViewPlanInputRequest: {
-            /** @description id of a power tower */
-            asset: number;
             camera?: components["schemas"]["CameraRequest"];
             /** @description of the catalogue, in place of `camera` */
             camera_key?: string;
@@ -8642,10 +8673,43 @@ export interface components {
              * @default 4
              */
             min_height_m: number;
+            /** @description id of a power tower */
+            asset: number;
         };
         ViewPlanZone: {
             id: number;
             name: string;
+        };
+        /** @description Photos of every part of a target. */
+        Views: {
+            /**
+             * Format: double
+             * @description ground sample distance: what a pixel shows at most, across the optical axis
+             */
+            gsd_mm: number;
+            /**
+             * Format: double
+             * @description of the UAV above the ground
+             */
+            min_height_m: number;
+            camera: components["schemas"]["Camera"];
+        };
+        /** @description Photos of every part: with which camera, and how fine. */
+        ViewsInputRequest: {
+            camera?: components["schemas"]["CameraRequest"];
+            /** @description of the catalogue, in place of `camera` */
+            camera_key?: string;
+            /**
+             * Format: double
+             * @description ground sample distance: what a pixel shows at most, across the optical axis
+             */
+            gsd_mm: number;
+            /**
+             * Format: double
+             * @description of the UAV above the ground
+             * @default 4
+             */
+            min_height_m: number;
         };
         VoltageCount: {
             voltage_v: number;
@@ -9760,10 +9824,13 @@ export type VehicleReport = components['schemas']['VehicleReport'];
 export type VehicleText = components['schemas']['VehicleText'];
 export type VehicleTextPage = components['schemas']['VehicleTextPage'];
 export type VerificationMail = components['schemas']['VerificationMail'];
+export type View = components['schemas']['View'];
 export type ViewCoverage = components['schemas']['ViewCoverage'];
 export type ViewPlan = components['schemas']['ViewPlan'];
 export type ViewPlanInputRequest = components['schemas']['ViewPlanInputRequest'];
 export type ViewPlanZone = components['schemas']['ViewPlanZone'];
+export type Views = components['schemas']['Views'];
+export type ViewsInputRequest = components['schemas']['ViewsInputRequest'];
 export type VoltageCount = components['schemas']['VoltageCount'];
 export type WaitingCommand = components['schemas']['WaitingCommand'];
 export type WaitingStart = components['schemas']['WaitingStart'];

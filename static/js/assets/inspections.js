@@ -8,9 +8,33 @@ import { t, tn } from "../text.js";
 import { dateText, lengthText, numberText } from "../units.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { AssetCounts, AssetDetailFeature, AssetMission, AssetMissionPage } from "../api_types.d.ts" */
+/** @import { AssetCounts, AssetDetailFeature, AssetMission, AssetMissionPage, TargetInputRequest } from "../api_types.d.ts" */
 
 const ENDED = ["completed", "aborted", "failed"];
+
+/**
+ * Opens a new mission with the asset as target.
+ *
+ * @param {number} asset
+ * @param {string} label
+ * @param {TargetInputRequest["task"]} [task]
+ * @param {string} [key] idempotency key
+ */
+export async function planInspection(asset, label, task, key = freshKey()) {
+  const body = {
+    name: t("Inspection of {name}", { name: label }).slice(0, 200),
+    targets: [{ asset, ...(task ? { task } : {}) }],
+  };
+  try {
+    const { data } = /** @type {Answer<{ id: string }>} */ (
+      await post("/missions", body, { headers: { "Idempotency-Key": key } })
+    );
+    location.assign(`/missions/${data.id}`);
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
+  }
+}
 
 /** The button that opens a new mission with the asset as target. @param {AssetDetailFeature} feature */
 export function planButton({ id, properties }) {
@@ -19,20 +43,8 @@ export function planButton({ id, properties }) {
   const button = h("button", { type: "button", class: "button primary" }, icon("list-plus", "small"), words);
   button.addEventListener("click", async () => {
     button.disabled = true;
-    const body = {
-      name: t("Inspection of {name}", { name: properties.label }).slice(0, 200),
-      targets: [{ asset: id }],
-    };
-    try {
-      const { data } = /** @type {Answer<{ id: string }>} */ (
-        await post("/missions", body, { headers: { "Idempotency-Key": key } })
-      );
-      location.assign(`/missions/${data.id}`);
-    } catch (error) {
-      button.disabled = false;
-      if (!(error instanceof ApiError)) throw error;
-      toast(error.message);
-    }
+    await planInspection(id, properties.label, undefined, key);
+    button.disabled = false;
   });
   return button;
 }

@@ -10,7 +10,7 @@ import { closeViewPlan, viewPlanPart } from "../view_plan/panel.js";
 import { editMarked } from "./bulk_edit.js";
 import { mountFilters } from "./filters.js";
 import { assetForm } from "./form.js";
-import { inspectionsPart, planButton } from "./inspections.js";
+import { inspectionsPart, planButton, planInspection } from "./inspections.js";
 
 /** @import { AssetCounts, AssetDetailFeature, AssetDetailProperties, AssetFeature } from "../api_types.d.ts" */
 /** @import { ShapeKind } from "../draw/types.d.ts" */
@@ -117,7 +117,12 @@ function details(feature) {
 
 /** The way to the photos of a tower. @param {AssetDetailFeature} feature */
 const photosPart = ({ id, properties }) =>
-  properties.kind === "tower" && !properties.vanished_at && viewPlanPart(id, records.map);
+  properties.kind === "tower" &&
+  !properties.vanished_at &&
+  viewPlanPart(id, records.map, {
+    words: t("Plan an inspection with these photos"),
+    act: (views) => planInspection(id, properties.label, { kind: "photo", views }),
+  });
 
 /** The towers of a line in the list. @param {number} id @param {string} label */
 function showSupports(id, label) {

@@ -148,7 +148,7 @@ const rehearsing = mountRehearsal(store, createRehearsing(store, { isStage }), {
 });
 flying.watch();
 mountSavedState(store, page.canPlan);
-mountTargets(store, actions, page.canPlan, (target) => map.show(target));
+mountTargets(store, actions, page.canPlan, map);
 uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
 if (page.canPlan) {
   mountOptions(store, actions, page.canPlan);

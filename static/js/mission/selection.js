@@ -3,9 +3,10 @@
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./options/flight_options.js";
+import { isUsualTask, taskOf } from "./tasks.js";
 
-/** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Task, Wishes } from "./types.d.ts" */
-/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, TaskOutput, UavInputRequest } from "../api_types.d.ts" */
+/** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Wishes } from "./types.d.ts" */
+/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, UavInputRequest } from "../api_types.d.ts" */
 
 /**
  * Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last
@@ -113,11 +114,6 @@ export function nameOf({ label, detail }) {
   return detail ? `${label}, ${detail}` : label;
 }
 
-/** @param {Pick<PickedTarget, "kind" | "position">} target */
-export function isWhole(target) {
-  return (target.kind === "line" || target.kind === "railway") && !target.position;
-}
-
 /** @param {MissionSelection} selection @param {PickedTarget[]} targets @returns {MissionSelection} */
 export function withTargets(selection, targets) {
   const known = new Set(selection.targets.map((target) => target.key));
@@ -129,61 +125,6 @@ export function withTargets(selection, targets) {
 export function withoutTargets(selection, keys) {
   const gone = new Set(keys);
   return { ...selection, targets: selection.targets.filter((target) => !gone.has(target.key)) };
-}
-
-/** Default seconds at a target, as in planning/problem.py. */
-export const HOLD_S = { look: 5, photo: 10, hold: 30 };
-export const MAX_HOLD_S = 3600;
-
-/**
- * The default task of a target: towers and bridges are photographed, lines are filmed in passing.
- *
- * @param {Pick<PickedTarget, "asset" | "kind" | "position">} target
- * @returns {TaskOutput}
- */
-function usualTask(target) {
-  if (target.asset === null) return { kind: "hold", hold_s: 10 };
-  if (isWhole(target)) return { kind: "look", hold_s: 0 };
-  return target.kind === "tower" || target.kind === "bridge"
-    ? { kind: "photo", hold_s: HOLD_S.photo }
-    : { kind: "look", hold_s: HOLD_S.look };
-}
-
-/** @param {Pick<PickedTarget, "asset" | "kind" | "position" | "task">} target @returns {TaskOutput} */
-export function taskOf(target) {
-  return target.task
-    ? { kind: target.task.kind, hold_s: target.task.hold_s ?? HOLD_S[target.task.kind] }
-    : usualTask(target);
-}
-
-/** @param {TaskOutput} a @param {TaskOutput} b */
-const isSameTask = (a, b) => a.kind === b.kind && a.hold_s === b.hold_s;
-
-/** @param {PickedTarget} target */
-export function isUsualTask(target) {
-  return isSameTask(taskOf(target), usualTask(target));
-}
-
-/**
- * The same targets with another task at some of them; without seconds each keeps its own where the kind stays.
- *
- * @param {MissionSelection} selection
- * @param {string[]} keys
- * @param {Task} task
- * @returns {MissionSelection}
- */
-export function withTask(selection, keys, { kind, hold_s = null }) {
-  const wanted = new Set(keys);
-  /** @param {PickedTarget} target */
-  const tasked = (target) => {
-    const now = taskOf(target);
-    const next = { kind, hold_s: hold_s ?? (now.kind === kind ? now.hold_s : HOLD_S[kind]) };
-    return isSameTask(now, next) ? target : { ...target, task: isSameTask(next, usualTask(target)) ? null : next };
-  };
-  return {
-    ...selection,
-    targets: selection.targets.map((target) => (wanted.has(target.key) ? tasked(target) : target)),
-  };
 }
 
 /** The wishes of a target by default. @type {Readonly<Wishes>} */

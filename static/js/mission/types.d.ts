@@ -1,6 +1,7 @@
 /** State of a mission's page and the shapes that its modules share. Positions are longitude, latitude [deg]. */
 
 import type {
+  Camera,
   Command,
   ConditionsOutput,
   Ground,
@@ -57,6 +58,15 @@ export interface MissionPageData {
 export interface Task {
   kind: TaskKind;
   hold_s?: number | null;
+  /** photos of every part; null: none */
+  views?: Views | null;
+}
+
+/** Photos of every part of a target: with which camera, how fine, and how low the UAV may come. */
+export interface Views {
+  gsd_mm: number;
+  min_height_m: number;
+  camera: Camera;
 }
 
 /** How urgent a target is, which UAV alone may fly it, which sensor it needs. */

@@ -1,4 +1,4 @@
-/** "Plan photos" in a tower's details: a button that opens the panel of camera, ground sample distance and least height. Each change plans anew. */
+/** The panel that plans photos of a tower: camera, ground sample distance and least height. Each change plans anew. */
 
 import { ApiError, isAbort, post } from "../api.js";
 import { gsdText } from "../cameras/words.js";
@@ -12,15 +12,24 @@ import { createViewPlanLayer } from "./layer.js";
 import { resultOf } from "./result.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { ViewPlan } from "../api_types.d.ts" */
-/** @import { Palette } from "../domain/palette.js" */
+/** @import { Camera, ViewPlan } from "../api_types.d.ts" */
 /** @import { MapLibreMap } from "../map/types.d.ts" */
 
-/** @typedef {{ map: MapLibreMap, onRecolour: (act: (palette: Palette) => void) => unknown }} Ground */
+/** @typedef {{ map: MapLibreMap, onRecolour: (act: () => void) => unknown }} Ground */
+/** @typedef {{ gsd_mm: number, min_height_m: number, camera: Camera }} Views what photos are planned by */
+/** @typedef {{ words: string, act: (views: Views) => unknown }} Take what can be done with planned photos */
+/**
+ * @typedef {object} PanelOptions
+ * @property {string} [title]
+ * @property {Views | null} [views] to begin with
+ * @property {Take} take
+ * @property {() => void} [closed]
+ */
 
 const [MIN_GSD_MM, MAX_GSD_MM, GSD_STEP_MM] = [0.5, 10, 0.1];
 const [MIN_HEIGHT_M, MAX_HEIGHT_M] = [2, 60];
 const SETTLED_MS = 300;
+const KEPT = "kept"; // the value of a camera that a target was planned with and no type carries now
 /** What was asked last is asked first of the next tower; camera: "" until one was chosen or has shown anything. */
 const asked = { camera: "", gsd_mm: 2, min_height_m: 4 };
 
@@ -74,7 +83,9 @@ class ViewPlanPanel {
   #planning = new AbortController();
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   #timer;
-  #isFirst = true;
+  #isFitted = false;
+  /** @type {Views | null} */
+  #begun = null;
   /** @type {Awaited<ReturnType<typeof readCameras>>["choices"]} */
   #choices = new Map();
   #camera = h("select", { class: "input", id: "view-plan-camera" });
@@ -89,7 +100,8 @@ class ViewPlanPanel {
     this.#gsd.element,
     this.#height.element,
   );
-  title = h("h3", { tabindex: -1 }, icon("camera", "small"), t("Plan photos"));
+  #taking = h("button", { type: "button", class: "button primary", hidden: true });
+  title = h("h3", { tabindex: -1 });
   element = h(
     "section",
     { class: "view-plan", "aria-label": t("Plan photos") },
@@ -106,16 +118,21 @@ class ViewPlanPanel {
     this.#form,
     this.#state,
     this.#result,
-    h("p", { class: "quiet-text" }, t("Preview: not part of a mission yet.")),
+    this.#taking,
   );
 
   /**
    * @param {number} asset id of the tower
-   * @param {{ layer: ReturnType<typeof createViewPlanLayer>, closed: () => void }} on
+   * @param {{ layer: ReturnType<typeof createViewPlanLayer>, take: Take, closed: () => void }} on
+   * @param {Pick<PanelOptions, "title" | "views">} options
    */
-  constructor(asset, on) {
+  constructor(asset, on, { title = t("Plan photos"), views = null }) {
     this.#asset = asset;
     this.#on = on;
+    this.#begun = views;
+    this.title.append(icon("camera", "small"), title);
+    this.#taking.textContent = on.take.words;
+    this.#taking.addEventListener("click", () => this.#take());
     this.#form.addEventListener("submit", (event) => event.preventDefault());
     this.#camera.addEventListener("change", () => {
       asked.camera = this.#camera.value;
@@ -157,15 +174,36 @@ class ViewPlanPanel {
       const { options, choices } = await readCameras(this.#reading.signal);
       this.#choices = choices;
       setChildren(this.#camera, options);
-      if (choices.has(asked.camera)) this.#camera.value = asked.camera;
+      if (this.#begun) this.#beginWith(this.#begun);
+      else if (choices.has(asked.camera)) this.#camera.value = asked.camera;
       await this.#plan();
     } catch (error) {
       this.#failed(error, () => this.#start());
     }
   }
 
+  /** As it was chosen before; a camera that is not carried any more stays to choose. @param {Views} views */
+  #beginWith({ camera }) {
+    const known = [...this.#choices].find(([, choice]) => choice.camera.name === camera.name)?.[0];
+    if (!known) {
+      this.#choices.set(KEPT, { camera, request: { camera } });
+      this.#camera.prepend(h("option", { value: KEPT }, camera.name));
+    }
+    this.#camera.value = known ?? KEPT;
+    asked.camera = this.#camera.value;
+  }
+
+  #take() {
+    const chosen = this.#choices.get(this.#camera.value);
+    if (!chosen) return;
+    const { gsd_mm, min_height_m } = asked;
+    this.#on.take.act({ gsd_mm, min_height_m, camera: chosen.camera });
+    this.close();
+  }
+
   async #plan() {
     this.#planning.abort();
+    this.#taking.hidden = true;
     const chosen = this.#choices.get(this.#camera.value);
     if (!chosen || !this.#form.checkValidity()) return;
     this.#planning = new AbortController();
@@ -214,8 +252,9 @@ class ViewPlanPanel {
       resultOf(plan, (number) => this.#on.layer.choose(plan, number)),
     );
     this.#result.querySelector("details")?.toggleAttribute("open", isOpen);
-    this.#on.layer.show(plan, { isNew: this.#isFirst });
-    this.#isFirst = false;
+    this.#on.layer.show(plan, { isNew: !this.#isFitted });
+    this.#isFitted ||= plan.photos.length > 0;
+    this.#taking.hidden = !plan.photos.length;
     announce(tn(plan.photos.length, "{count} photo planned", "{count} photos planned"));
   }
 
@@ -255,8 +294,43 @@ function layerOf({ map, onRecolour }) {
   return made;
 }
 
-/** @param {number} asset id of a tower @param {Ground} ground */
-export function viewPlanPart(asset, ground) {
+/**
+ * Opens the panel in a place, in place of what is there. One panel is open at a time.
+ *
+ * @param {HTMLElement} place
+ * @param {number} asset id of a tower
+ * @param {Ground} ground
+ * @param {PanelOptions} options
+ */
+export function openViewPlan(place, asset, ground, { take, closed = () => {}, ...options }) {
+  open?.close();
+  layer ??= layerOf(ground);
+  if (options.views) Object.assign(asked, { gsd_mm: options.views.gsd_mm, min_height_m: options.views.min_height_m });
+  open = new ViewPlanPanel(
+    asset,
+    {
+      layer,
+      take,
+      closed() {
+        open = null;
+        closed();
+      },
+    },
+    options,
+  );
+  setChildren(place, open.element);
+  open.title.focus({ preventScroll: true });
+  open.element.scrollIntoView({ block: "start" });
+}
+
+/**
+ * The button that opens the panel in the details of a tower.
+ *
+ * @param {number} asset id of the tower
+ * @param {Ground} ground
+ * @param {Take} take
+ */
+export function viewPlanPart(asset, ground, take) {
   const place = h("div", {});
   const button = h(
     "button",
@@ -265,18 +339,13 @@ export function viewPlanPart(asset, ground) {
     t("Plan photos"),
   );
   function show() {
-    layer ??= layerOf(ground);
-    open = new ViewPlanPanel(asset, {
-      layer,
+    openViewPlan(place, asset, ground, {
+      take,
       closed() {
-        open = null;
         setChildren(place, button);
         if (button.isConnected) button.focus();
       },
     });
-    setChildren(place, open.element);
-    open.title.focus({ preventScroll: true });
-    open.element.scrollIntoView({ block: "start" });
   }
   setChildren(place, button);
   return h("div", { class: "record-acts" }, place);

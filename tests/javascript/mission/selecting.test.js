@@ -4,16 +4,14 @@ import test from "node:test";
 import { isWide } from "../../../static/js/map/lasso.js";
 import { partOfLine } from "../../../static/js/mission/map/line_part.js";
 import {
+  basisOf,
   EMPTY,
-  isUsualTask,
   keyOf,
   requestOf,
   storedTarget,
   targetOf,
   targetOfRow,
-  taskOf,
   withTargets,
-  withTask,
 } from "../../../static/js/mission/selection.js";
 import {
   listIn,
@@ -22,6 +20,7 @@ import {
   rowsToAdd,
   targetOfPlace,
 } from "../../../static/js/mission/targets/list_reading.js";
+import { isUsualTask, taskOf, withTask, withViews } from "../../../static/js/mission/tasks.js";
 import { createHistory, createStore } from "../../../static/js/store.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "T 7" }, centre: [10, 50] });
@@ -297,4 +296,34 @@ test("a place is added by its coordinates where its name is not in the data", ()
   assert.equal(targetOfPlace(place("T 2")).external_id, "T 2");
   assert.equal(targetOfPlace(place("T 2", "SAP-2")).external_id, "SAP-2");
   assert.equal(targetOfPlace(place("")).external_id, undefined);
+});
+
+test("photos of every part need the camera, and another task needs it no more", () => {
+  const camera = { name: "Zoom", sensor_width_mm: 6.4, pixels_wide: 8000 };
+  const selection = withTargets(EMPTY, [tower, line]);
+  const viewed = withViews(selection, [tower.key, line.key], { gsd_mm: 2, min_height_m: 4, camera });
+  assert.deepEqual(taskOf(viewed.targets[0]), {
+    kind: "photo",
+    hold_s: 3,
+    views: { gsd_mm: 2, min_height_m: 4, camera },
+  });
+  assert.equal(viewed.targets[0].sensor, "Zoom");
+  assert.equal(viewed.targets[1], selection.targets[1], "a line is no tower");
+  const stored = {
+    ...viewed.targets[0],
+    task: {
+      kind: "photo",
+      hold_s: 3,
+      views: { camera: { pixels_wide: 8000, name: "Zoom", sensor_width_mm: 6.4 }, gsd_mm: 2, min_height_m: 4 },
+    },
+  };
+  assert.equal(
+    basisOf({ ...viewed, targets: [stored] }),
+    basisOf({ ...viewed, targets: [viewed.targets[0]] }),
+    "whatever the order of names",
+  );
+  const longer = withTask(viewed, [tower.key], { kind: "photo", hold_s: 5 });
+  assert.deepEqual([taskOf(longer.targets[0]).hold_s, taskOf(longer.targets[0]).views?.gsd_mm], [5, 2]);
+  const plain = withTask(viewed, [tower.key], { kind: "photo" });
+  assert.deepEqual([plain.targets[0].task, plain.targets[0].sensor], [null, ""]);
 });

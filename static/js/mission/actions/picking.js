@@ -3,10 +3,11 @@
 import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import * as picks from "../selection.js";
+import { withTask, withViews } from "../tasks.js";
 import { createNetworkPicking } from "./network_picking.js";
 
 /** @import { AssetFeature } from "../../api_types.d.ts" */
-/** @import { MissionContext, MissionSelection, PickedTarget, Task, Wishes } from "../types.d.ts" */
+/** @import { MissionContext, MissionSelection, PickedTarget, Task, Views, Wishes } from "../types.d.ts" */
 
 /** The way back of the last step. @param {Pick<MissionContext, "history">} context */
 const undoIn = ({ history }) => ({ label: t("Undo"), act: () => history.undo() });
@@ -104,7 +105,13 @@ function createTargetChanges(context) {
 
   /** task: { kind, hold_s? } @param {string[]} keys @param {Task} task */
   function setTask(keys, task) {
-    if (!change(picks.withTask(selection(), keys, task))) return;
+    if (!change(withTask(selection(), keys, task))) return;
+    toast(tn(keys.length, "The task of {count} target is set.", "The task of {count} targets is set."), undo);
+  }
+
+  /** Photographs every part of targets. @param {string[]} keys @param {Views} views */
+  function setViews(keys, views) {
+    if (!change(withViews(selection(), keys, views))) return;
     toast(tn(keys.length, "The task of {count} target is set.", "The task of {count} targets is set."), undo);
   }
 
@@ -121,6 +128,7 @@ function createTargetChanges(context) {
   return {
     removeTargets,
     setTask,
+    setViews,
     setWish,
     undo: () => history.undo() && announce(t("Undone.")),
     redo: () => history.redo() && announce(t("Done again.")),

@@ -21,7 +21,8 @@ import { mountCaught } from "../panels/caught.js";
 import { askForZone as askForFacts } from "../panels/temporary_zone.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "../plan/plan_view.js";
 import { staysOf } from "../plan/route_times.js";
-import { isWhole, nameOf, placeTarget } from "../selection.js";
+import { nameOf, placeTarget } from "../selection.js";
+import { isWhole } from "../tasks.js";
 import { standingUavs } from "../uavs/fleet.js";
 import { baseView } from "./base_view.js";
 import { mountLostLinkMap } from "./lost_link_map.js";
@@ -71,13 +72,18 @@ export function mountMap(store, actions, page, { askForUav }) {
   const { map, opensAtPlace } = view;
   const fitting = createFitting(view, store);
   const layers = createLayers(view, frame, store, actions, page);
+  /** @type {Set<() => void>} */
+  const recolouring = new Set();
   const controls = mountControls(view, page, {
     fit: () => fitting.fit(),
     isBusy: () => ["place", "rally", "zone"].includes(store.state.tool),
     measures: (isOn) => {
       if (isOn) store.update({ tool: "point" });
     },
-    recoloured: layers.recolour,
+    recoloured() {
+      layers.recolour();
+      for (const recolour of recolouring) recolour();
+    },
     layers: () => layers.entries(),
     placeActs: (place) => [
       ...(page.canPlan
@@ -119,6 +125,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     /** @param {number} steps */
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),
     bindings: controls.bindings,
+    ground: { map, onRecolour: (/** @type {() => void} */ act) => recolouring.add(act) },
     closeTop: () => controls.closeTop() || picking.close() || Boolean(layers.reach()?.close()),
     centre: () => map.getCenter().toArray(),
     box: () => /** @type {Box} */ (map.getBounds().toArray().flat()),

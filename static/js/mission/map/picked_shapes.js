@@ -3,7 +3,7 @@
 import { get } from "../../api.js";
 import { piecesOf } from "../../map/click_router.js";
 import * as selectionLayer from "../../map/layers/selection.js";
-import { isWhole } from "../selection.js";
+import { isWhole } from "../tasks.js";
 import { partOfLine } from "./line_part.js";
 
 /** @import { Answer } from "../../api.js" */

@@ -1,10 +1,12 @@
 /** Tasks, priority and UAV of targets: texts, and the menu that sets them for one, several or all. */
 
+import { gsdText } from "../../cameras/words.js";
 import { h, icon } from "../../dom.js";
 import { closeMenu } from "../../page/chrome.js";
 import { t, tn } from "../../text.js";
 import { durationText } from "../../units.js";
-import { MAX_HOLD_S, sensorsKnown, taskOf, wishesOf } from "../selection.js";
+import { sensorsKnown, wishesOf } from "../selection.js";
+import { canHaveViews, MAX_HOLD_S, taskOf } from "../tasks.js";
 import { uavsByName } from "../uavs/mission_uavs.js";
 import { lockOf, wishedPlace } from "./locks.js";
 
@@ -12,6 +14,7 @@ import { lockOf, wishedPlace } from "./locks.js";
 
 /** @typedef {Pick<MissionPageState, "selection" | "fleet"> & { orders: FlownOrder[] }} Known what the menu is made from */
 /** @typedef {{ icon: string, words: string, act: () => unknown }} MenuItem */
+/** @typedef {(targets: PickedTarget[]) => void} PlanViews */
 
 /** @type {{ kind: Task["kind"], icon: string, words: () => string, word: () => string }[]} the word is for a chip */
 export const TASKS = [
@@ -20,18 +23,21 @@ export const TASKS = [
   { kind: "hold", icon: "timer", words: () => t("Hover"), word: () => t("Hover") },
 ];
 
-/** @param {Pick<Task, "kind">} task */
+/** @param {Task} task */
 export function taskIcon(task) {
+  if (task.views) return "aperture";
   return (TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0]).icon;
 }
 
-/** "Photos" @param {Pick<Task, "kind">} task */
-export function taskWord({ kind }) {
+/** "Photos" @param {Task} task */
+export function taskWord({ kind, views }) {
+  if (views) return t("Every part");
   return (TASKS.find((task) => task.kind === kind) ?? TASKS[0]).word();
 }
 
 /** "Take photos, 10 s" @param {Task} task */
 export function taskText(task) {
+  if (task.views) return t("Photograph every part, GSD {gsd}", { gsd: gsdText(task.views.gsd_mm) });
   const { words } = TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0];
   return task.hold_s ? `${words()}, ${secondsText(task.hold_s)}` : words();
 }
@@ -187,19 +193,21 @@ export function uavMenu(target, actions, selection) {
 }
 
 /**
- * The menu for these targets; `known` is { selection, fleet, orders }, `more` are additional acts: [{ icon, words, act }].
+ * The menu for these targets; `known` is { selection, fleet, orders }, `more` are additional acts: [{ icon, words, act }]. planViews
+ * lets the user plan photos of every part of towers.
  *
  * @param {PickedTarget[]} targets
  * @param {MissionActions} actions
  * @param {Known} known
- * @param {MenuItem[]} [more]
+ * @param {{ more?: MenuItem[], planViews?: PlanViews }} [acts]
  */
-export function targetMenu(targets, actions, known, more = []) {
+export function targetMenu(targets, actions, known, { more = [], planViews } = {}) {
   const keys = targets.map((target) => target.key);
   const tasks = targets.map(taskOf);
-  const kinds = new Set(tasks.map((task) => task.kind));
+  const haveViews = tasks.every((task) => task.views);
+  const kinds = new Set(tasks.map((task) => (task.views ? "views" : task.kind)));
   const times = new Set(tasks.map((task) => task.hold_s));
-  const only = kinds.size === 1 ? tasks[0].kind : null;
+  const only = kinds.size === 1 && !haveViews ? tasks[0].kind : null;
   /** @param {Task} task */
   const set = (task) => {
     closeMenu();
@@ -221,8 +229,12 @@ export function targetMenu(targets, actions, known, more = []) {
   /** @param {SubmitEvent} event */
   const submit = (event) => {
     event.preventDefault();
-    set({ kind: only ?? "hold", hold_s: Math.round(seconds.valueAsNumber) });
+    set({ kind: haveViews ? "photo" : (only ?? "hold"), hold_s: Math.round(seconds.valueAsNumber) });
   };
+  function openViews() {
+    closeMenu();
+    planViews?.(targets);
+  }
   const placing = targets.length === 1 ? placeChoices(targets[0], actions, known) : [];
   const title = targets.length === 1 ? targets[0].label : tn(targets.length, "{count} target", "{count} targets");
   return h(
@@ -245,10 +257,19 @@ export function targetMenu(targets, actions, known, more = []) {
         only === kind && h("span", { class: "end" }, icon("check", "small")),
       ),
     ),
+    planViews &&
+      targets.every(canHaveViews) &&
+      h(
+        "button",
+        { type: "button", "aria-pressed": String(haveViews), onclick: openViews },
+        icon("aperture"),
+        t("Photograph every part…"),
+        haveViews && h("span", { class: "end" }, icon("check", "small")),
+      ),
     h(
       "form",
       { class: "task-seconds", onsubmit: submit },
-      h("label", { for: "task-seconds" }, t("Hover time")),
+      h("label", { for: "task-seconds" }, haveViews ? t("Hover time per photo") : t("Hover time")),
       h("div", { class: "with-unit" }, seconds, h("span", { class: "unit" }, "s")),
       h("button", { class: "button" }, t("Set")),
     ),

@@ -5,14 +5,15 @@ import { toggleMenu } from "../../../page/chrome.js";
 import { t, tn } from "../../../text.js";
 import { targetMenu } from "../../targets/target_menu.js";
 
+/** @import { PlanViews } from "../../targets/target_menu.js" */
 /** @import { MissionActions, MissionStore } from "../../types.d.ts" */
 
 /**
  * @param {MissionStore} store
  * @param {MissionActions} actions
- * @param {{ chooseAll: () => void, done: () => void }} acts
+ * @param {{ chooseAll: () => void, done: () => void, planViews: PlanViews }} acts
  */
-export function mountChosenBar(store, actions, { chooseAll, done }) {
+export function mountChosenBar(store, actions, { chooseAll, done, planViews }) {
   const bar = byId("chosen-bar");
   const chosen = () => {
     const keys = new Set(store.state.chosenTargets);
@@ -31,7 +32,7 @@ export function mountChosenBar(store, actions, { chooseAll, done }) {
     t("Task, priority, UAV"),
   );
   task.addEventListener("click", () =>
-    toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] })),
+    toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] }, { planViews })),
   );
   const between = h(
     "button",

@@ -3,7 +3,7 @@
 import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
-import { isUsualTask, nameOf, taskOf } from "../../selection.js";
+import { nameOf } from "../../selection.js";
 import { lockOf } from "../../targets/locks.js";
 import {
   priorityOf,
@@ -14,6 +14,7 @@ import {
   uavOfTarget,
   whoMayFly,
 } from "../../targets/target_menu.js";
+import { isUsualTask, taskOf } from "../../tasks.js";
 
 /** @import { MissionSelection, PickedTarget } from "../../types.d.ts" */
 

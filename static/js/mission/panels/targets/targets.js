@@ -1,19 +1,22 @@
 /** The list of targets, and acts on several of them at once. */
 
-import { byId, keyedList } from "../../../dom.js";
+import { byId, h, keyedList } from "../../../dom.js";
 import { toggleMenu } from "../../../page/chrome.js";
 import { t, tn } from "../../../text.js";
+import { openViewPlan } from "../../../view_plan/panel.js";
 import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan/plan_view.js";
 import { arrivalsOf } from "../../plan/route_times.js";
-import { isWhole } from "../../selection.js";
 import { lockOf, ordersOf, wishedPlace } from "../../targets/locks.js";
 import { targetMenu, uavMenu } from "../../targets/target_menu.js";
+import { isWhole } from "../../tasks.js";
 import { createChoosing } from "./choosing.js";
 import { mountChosenBar } from "./chosen_bar.js";
 import { createGroups } from "./group.js";
 import { refreshRow, targetRow } from "./row.js";
 
 /** @import { FlownOrder, MissionActions, MissionPageState, MissionStore, PickedTarget } from "../../types.d.ts" */
+/** @import { mountMap } from "../../map/map_panel.js" */
+/** @import { PlanViews } from "../../targets/target_menu.js" */
 /** @import { Choosing } from "./choosing.js" */
 
 /**
@@ -34,16 +37,19 @@ const SHOWN_FIRST = 40;
  * @param {MissionStore} store
  * @param {MissionActions} actions
  * @param {boolean} canPlan
- * @param {(target: PickedTarget) => void} showOnMap
+ * @param {Pick<ReturnType<typeof mountMap>, "show" | "ground">} map
  */
-export function mountTargets(store, actions, canPlan, showOnMap) {
+export function mountTargets(store, actions, canPlan, map) {
   let showAll = false;
   /** @type {Shown} */
   let shown = { places: new Map(), missed: new Set(), order: [], visible: [], arrivals: new Map(), orders: [] };
   const list = byId("target-list");
+  const planViews = viewPlanning(list, actions, map);
   const groups = createGroups(() => refresh(store.state), SHOWN_FIRST);
   const choosing = createChoosing(store, { canPlan, order: () => shown.order });
-  const bar = canPlan ? mountChoosing(list, store, actions, { choosing, refresh: () => refresh(store.state) }) : null;
+  const bar = canPlan
+    ? mountChoosing(list, store, actions, { choosing, planViews, refresh: () => refresh(store.state) })
+    : null;
 
   /** @param {MouseEvent} event @param {PickedTarget} target */
   function press(event, target) {
@@ -51,7 +57,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     else if (canPlan && (event.ctrlKey || event.metaKey || choosing.isOn())) choosing.toggle(target);
     else {
       choosing.only(target);
-      showOnMap(target);
+      map.show(target);
     }
   }
 
@@ -72,7 +78,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
         }),
       toggle: () => choosing.toggle(target),
       chooseUpTo: () => choosing.upTo(target),
-      ...menusOf(target.key, store, actions),
+      ...menusOf(target.key, store, actions, planViews),
       remove: () => actions.removeTargets([target.key]),
     });
 
@@ -130,9 +136,9 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
  * @param {HTMLElement} list
  * @param {MissionStore} store
  * @param {MissionActions} actions
- * @param {{ choosing: Choosing, refresh: () => void }} how
+ * @param {{ choosing: Choosing, planViews: PlanViews, refresh: () => void }} how
  */
-function mountChoosing(list, store, actions, { choosing, refresh }) {
+function mountChoosing(list, store, actions, { choosing, planViews, refresh }) {
   const keys = () => store.state.selection.targets.map((target) => target.key);
   const choose = byId("choose-targets");
   const clear = byId("clear-targets");
@@ -141,7 +147,7 @@ function mountChoosing(list, store, actions, { choosing, refresh }) {
     choosing.choose([]);
     refresh();
   };
-  const bar = mountChosenBar(store, actions, { chooseAll: choosing.all, done: stop });
+  const bar = mountChosenBar(store, actions, { chooseAll: choosing.all, done: stop, planViews });
   choose.addEventListener("click", () => {
     if (choosing.isOn()) {
       stop();
@@ -176,8 +182,41 @@ function more(target, actions) {
   return [{ icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(asset) }];
 }
 
-/** What a row's chips do; a row is made once, and its target changes. @param {string} key @param {MissionStore} store @param {MissionActions} actions */
-function menusOf(key, store, actions) {
+/**
+ * The photos of every part of towers: a panel over the list, for the first of them; all get its camera and figures.
+ *
+ * @param {HTMLElement} list
+ * @param {MissionActions} actions
+ * @param {Pick<ReturnType<typeof mountMap>, "ground">} map
+ * @returns {PlanViews}
+ */
+function viewPlanning(list, actions, { ground }) {
+  const place = h("div", {});
+  list.before(place);
+  return (targets) => {
+    const [{ asset, label, task }] = targets;
+    if (asset === null) return;
+    const keys = targets.map(({ key }) => key);
+    openViewPlan(place, asset, ground, {
+      title: t("Photos of {name}", { name: label }),
+      views: task?.views ?? null,
+      take: {
+        words: tn(targets.length, "Use for this target", "Use for {count} targets"),
+        act: (views) => actions.setViews(keys, views),
+      },
+    });
+  };
+}
+
+/**
+ * What a row's chips do; a row is made once, and its target changes.
+ *
+ * @param {string} key
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {PlanViews} planViews
+ */
+function menusOf(key, store, actions, planViews) {
   const known = () => store.state.selection.targets.find((target) => target.key === key);
   /** @param {HTMLElement} opener @param {(target: PickedTarget) => HTMLElement} make */
   function open(opener, make) {
@@ -188,7 +227,12 @@ function menusOf(key, store, actions) {
     /** @param {HTMLElement} opener */
     openTask: (opener) =>
       open(opener, (target) =>
-        targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target, actions)),
+        targetMenu(
+          [target],
+          actions,
+          { ...store.state, orders: ordersOf(store.state.plan) },
+          { more: more(target, actions), planViews },
+        ),
       ),
     /** @param {HTMLElement} opener */
     openUav: (opener) => open(opener, (target) => uavMenu(target, actions, store.state.selection)),
