@@ -1,8 +1,11 @@
 """The assessment against flights whose errors are known by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from planning.task import Task, TaskKind, View
 from simulation.assessment.flown import AssessedRoute, FlownFlight, TrackEnding
 from simulation.assessment.following import following_of
 from simulation.assessment.judging import Assessment, judge
@@ -128,8 +131,39 @@ def test_a_wire_beside_and_below_is_as_far_as_in_space() -> None:
     """Along the second kilometre 6 m beside and 8 m below the flight: 10 m; as high as the flight it is 6 m."""
     below, level = (standing(((6.0, 1_200.0), (6.0, 1_800.0), top_m)) for top_m in (UP_M - 8.0, UP_M + 8.0))
     for wires, away_m in ((below, 10.0), (level, 6.0)):
-        on_way, _ = nearest_standing(flown().flights[0], wires, column_m=15.0)
+        on_way = nearest_standing(flown().flights[0], wires, column_m=15.0).way
         assert on_way is not None and on_way.away_m == pytest.approx(away_m, abs=0.05)
+
+
+def photographing() -> AssessedRoute:
+    """The second kilometre is flown through photos of the target, of which the last waypoint is one."""
+    route = flown()
+    *others, last = route.route.waypoints
+    taken = replace(last, target=4, task=Task(TaskKind.PHOTO, 0.0, view=View(0.0, 0.0, 20.0, 21.0, 8.9)))
+    planned = replace(route.route, waypoints=(*others, taken))
+    return replace(route, route=planned, flights=(FlownFlight(planned.flights[0], route.flights[0].track),))
+
+
+@pytest.mark.parametrize(("beside_m", "expected"), [(9.5, []), (8.0, [("fail", "obstacle")])])
+def test_a_flight_through_photos_keeps_its_own_clearance(beside_m: float, expected: list[tuple[str, str]]) -> None:
+    wires = standing(((beside_m, 1_200.0), (beside_m, 1_800.0), UP_M + 8.0))
+    assessment = judged(photographing(), standing=wires)
+    assert codes(assessment) == expected
+    if expected:
+        assert assessment.findings[0].facts["limit_m"] == 8.9
+    assert codes(judged(flown(), standing=wires)) == [("warnings", "obstacle")], "any other flight is warned of at 10 m"
+
+
+def test_wires_beside_the_rest_of_the_way_count_as_ever() -> None:
+    wires = standing(((4.0, 400.0), (4.0, 600.0), UP_M + 8.0))
+    assert codes(judged(photographing(), standing=wires)) == [("fail", "obstacle")]
+
+
+@pytest.mark.parametrize(("ground_m", "expected"), [(156.0, []), (157.5, [("warnings", "low")]), (159.0, [("fail", "low")])])
+def test_photos_may_be_low_over_the_ground_but_not_any_height(ground_m: float, expected: list[tuple[str, str]]) -> None:
+    hill = lambda positions: np.where(positions[:, 1] > 56.0105, ground_m, 100.0)  # noqa: E731
+    landing = [finding for finding in codes(judged(photographing(), ground_amsl_m=hill)) if finding[1] == "low"]
+    assert landing == expected
 
 
 def test_what_stands_beside_the_take_off_is_worth_a_warning_alone() -> None:

@@ -16,7 +16,7 @@ from missions.selectors.missions import mission_of_organisation
 from missions.services import TargetRequest, create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.refused import Refused
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from planning.views.camera import Gimbal, camera_to_json
 from simulation.flight.camera import SIMULATED_CAMERA
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe

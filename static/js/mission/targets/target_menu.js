@@ -133,6 +133,7 @@ function wishChoices(targets, actions, { selection, fleet }) {
         (name) => actions.tieTargets(keys, name || null),
       ),
     sensors.length > 0 &&
+      !targets.some((target) => taskOf(target).views) && // their camera is needed
       choiceOf(
         t("Required sensor"),
         wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""),
