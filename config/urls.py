@@ -21,6 +21,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("", include("inspection.page_urls")),
     path("", include("missions.page_urls")),
     path("", include("telemetry.page_urls")),
+    path("", include("results.page_urls")),
     path("admin/", admin.site.urls),
 ]
 

@@ -81,6 +81,12 @@ def media_use(organisation_id: int) -> MediaUse:
     return MediaUse(stored + open_ones, settings.MEDIA_BYTES)
 
 
+def unfinished_upload(user: User, sha256: str, size_bytes: int) -> MediaUpload | None:
+    """Return a user's unfinished upload of a file, which a later page or program continues."""
+    own = MediaUpload.objects.filter(organisation=user.organisation_id, created_by=user, medium=None)
+    return own.filter(sha256=sha256, size_bytes=size_bytes).order_by("created_at").first()
+
+
 def known_media(organisation_id: int, hashes: Collection[str]) -> dict[str, Medium]:
     """Return the organisation's media of these hashes."""
     return {medium.sha256: medium for medium in Medium.objects.filter(organisation=organisation_id, sha256__in=hashes)}
@@ -200,6 +206,19 @@ def upload_folder() -> Path:
     return folder
 
 
+def adopt_subject(medium: Medium, subject: Subject) -> None:
+    """Give a medium that belongs to no mission, and that nobody has placed, what it is sent for once more; the worker places it again."""
+    is_free = medium.mission_id is None and medium.placement in (Placement.WAITING, Placement.UNPLACED)
+    if not is_free or subject == Subject():
+        return
+    medium.mission, medium.uav = subject.mission, subject.uav
+    medium.target, medium.asset = subject.target, subject.asset
+    is_stated = subject.target is not None or subject.asset is not None
+    medium.placement = Placement.STATED if is_stated else Placement.WAITING
+    medium.state = MediumState.WAITING
+    medium.save(update_fields=["mission", "uav", "target", "asset", "placement", "state", "updated_at"])
+
+
 def _held(upload: MediaUpload) -> MediaUpload:
     """Return the locked row; bytes that the disk has lost are asked for again."""
     held = MediaUpload.objects.select_for_update(of=["self"]).get(pk=upload.pk)
@@ -255,7 +274,9 @@ def _medium_of(upload: MediaUpload, sha256: str, media_type: MediaType) -> Mediu
             "uploaded_by_id": upload.created_by_id,
         },
     )
-    if is_new:
+    if not is_new:
+        adopt_subject(medium, Subject(upload.mission, upload.uav, upload.target, upload.asset))
+    else:
         try:
             store_file(part_path(upload), original_name(upload.organisation_id, sha256))
         except OSError as error:

@@ -30,10 +30,12 @@ from results.services.uploads import (
     UploadRefused,
     WrongHash,
     WrongOffset,
+    adopt_subject,
     begin_upload,
     delete_upload,
     known_media,
     receive_part,
+    unfinished_upload,
 )
 from results.views.subjects import subject_of
 from workspace.api.errors import ApiProblem
@@ -95,7 +97,8 @@ class MediaUploads(TusView):
         operation_id="begin_media_upload",
         summary="Announce a photo or video",
         description=(
-            "200 with `is_known` where your organisation has a file of this hash: it need not be sent. By tus 1.0.0: Upload-Length, and "
+            "200 with `is_known` where your organisation has a file of this hash: it need not be sent; 200 without it where you have "
+            "begun to send this file before: continue from `received_bytes`. By tus 1.0.0: Upload-Length, and "
             "Upload-Metadata with `filename` and, if known, `sha256`, `mission`, `uav`, `target`, `asset`."
         ),
         parameters=[
@@ -113,7 +116,10 @@ class MediaUploads(TusView):
         values = body.validated_data
         sha256 = values.get("sha256", "")
         if not is_tus and sha256 and (medium := known_media(request.user.organisation_id, [sha256]).get(sha256)):
+            adopt_subject(medium, subject_of(request.user, values))
             return Response(known_upload_json(medium))
+        if not is_tus and sha256 and (begun := unfinished_upload(request.user, sha256, values["size_bytes"])):
+            return Response(upload_json(begun))
         with upload_problems():
             upload = begin_upload(
                 user=request.user, file_name=values["file_name"], size_bytes=values["size_bytes"], sha256=sha256,

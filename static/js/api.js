@@ -164,7 +164,7 @@ export async function request(method, path, { body, bytes, headers = {}, signal,
     send.body = JSON.stringify(body);
   }
   if (bytes !== undefined) {
-    send.headers["Content-Type"] = "application/octet-stream";
+    send.headers["Content-Type"] ??= "application/octet-stream";
     send.body = bytes;
   }
   let response;

@@ -59,7 +59,7 @@ DataImport.objects.filter(kind=ImportKind.OSM).update(is_synthetic=True, attribu
 NO_LEFTOVERS = """
 from django.apps import apps
 from django.db import connection
-models = [model for app in ("missions", "telemetry", "simulation") for model in apps.get_app_config(app).get_models()]
+models = [model for app in ("missions", "telemetry", "results", "simulation") for model in apps.get_app_config(app).get_models()]
 with connection.cursor() as cursor:
     cursor.execute(f"TRUNCATE {', '.join(model._meta.db_table for model in models)}")
 """

@@ -10,6 +10,7 @@ FOR_OPERATORS = (
     "/assets/data-issues",
     "/terrain",
     "/zones",
+    "/review",
     "/account",
     "/change-password",
     "/no-such-page",

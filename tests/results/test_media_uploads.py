@@ -109,10 +109,20 @@ def test_what_is_known_need_not_be_sent(client: Client) -> None:
     assert [one["id"] for one in known] == [str(medium.pk)]
 
 
-def test_sent_twice_at_once_a_file_is_stored_once(client: Client) -> None:
+def test_a_file_that_was_begun_before_is_continued(client: Client) -> None:
     content = dji_photo()
-    keys = [begin(client, content).json()["id"] for _ in range(2)]
-    assert [send(client, key, 0, content).status_code for key in keys] == [204, 204]
+    key = begin(client, content).json()["id"]
+    send(client, key, 0, content[:100])
+    again = begin(client, content)
+    assert (again.status_code, again.json()["id"], again.json()["received_bytes"]) == (200, key, 100)
+    assert begin(client_of(a_user()), content).json()["id"] != key
+
+
+def test_sent_twice_at_once_a_file_is_stored_once() -> None:
+    content = dji_photo()
+    clients = [client_of(a_user()) for _ in range(2)]
+    keys = [begin(one, content).json()["id"] for one in clients]
+    assert [send(one, key, 0, content).status_code for one, key in zip(clients, keys, strict=True)] == [204, 204]
     assert Medium.objects.get().uploads.count() == 2
 
 
@@ -263,15 +273,15 @@ def test_tuspy_sends_a_photo_and_continues_after_a_cut(live_server: Any, tmp_pat
 @pytest.mark.django_db(transaction=True)
 def test_of_two_programs_that_end_uploads_of_one_file_at_once_one_stores_it(settings: Any) -> None:
     content = file_of(picture((800, 600)), quality=95)
-    user = a_user()
-    keys = [begin(client_of(user), content).json()["id"] for _ in range(4)]
+    clients = [client_of(a_user()) for _ in range(4)]
+    keys = [begin(one, content).json()["id"] for one in clients]
 
-    def finish(key: str) -> int:
+    def finish(place: int) -> int:
         try:
-            return int(send(client_of(user), key, 0, content).status_code)
+            return int(send(clients[place], keys[place], 0, content).status_code)
         finally:
             connection.close()
 
     with ThreadPoolExecutor(4) as senders:
-        assert list(senders.map(finish, keys)) == [204] * 4
+        assert list(senders.map(finish, range(4))) == [204] * 4
     assert Medium.objects.get().uploads.count() == 4

@@ -9,10 +9,11 @@ from django.test import Client
 from missions.models import InspectionTarget, Mission
 from results.matching.nearest import PhotoPlace, TargetPlace, place_photo
 from results.models import Placement
+from results.services.reading import read_waiting
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.results.photos import dji_photo, exif_of, file_of, picture
-from tests.results.sending import upload_and_read
+from tests.results.sending import begin, upload_and_read
 from workspace.models import AuditEntry
 
 pytestmark = pytest.mark.django_db
@@ -89,6 +90,19 @@ def test_without_a_position_or_a_mission_it_stays_unplaced(client: Client) -> No
     for content, stated in ((file_of(picture(), exif=exif_of()), {"mission": str(mission.pk)}), (dji_photo(), {})):
         medium = upload_and_read(client, content, **stated)
         assert (medium.placement, medium.candidates) == (Placement.UNPLACED, [])
+
+
+def test_a_photo_without_a_mission_is_placed_when_it_is_sent_for_one(client: Client) -> None:
+    mission, other = mission_of(10.000, 10.004), mission_of(10.004)
+    content = dji_photo(10.0043, 56.0)
+    medium = upload_and_read(client, content)
+    assert begin(client, content, mission=str(mission.pk)).json()["is_known"]
+    read_waiting(budget_s=60.0)
+    medium.refresh_from_db()
+    assert (medium.mission, medium.target, medium.placement) == (mission, mission.targets.get(sequence=1), Placement.NEAREST)
+    begin(client, content, mission=str(other.pk))  # it belongs to a mission already
+    medium.refresh_from_db()
+    assert medium.mission == mission
 
 
 def test_what_was_stated_counts_more_than_what_is_near(client: Client) -> None:

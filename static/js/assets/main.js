@@ -4,6 +4,7 @@ import { byId, find, h, segments, term } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { countsText } from "../map/look/region_words.js";
 import { readPage } from "../page/chrome.js";
+import { resultsPart } from "../photos/asset_part.js";
 import { t, tn } from "../text.js";
 import { coordinateText, dateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
 import { closeViewPlan, viewPlanPart } from "../view_plan/panel.js";
@@ -235,7 +236,8 @@ const ASSETS = {
   details,
   form: assetForm,
   act: (feature) => (page.canPlan && feature.properties.is_flyable ? planButton(feature) : null),
-  more: (feature) => h("div", {}, photosPart(feature), inspectionsPart(feature, showSupports)),
+  more: (feature) =>
+    h("div", {}, photosPart(feature), resultsPart(feature, page), inspectionsPart(feature, showSupports)),
   closed: closeViewPlan,
   row: ({ properties }) => ({
     icon: properties.kind,

@@ -4,6 +4,8 @@ import { signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { routeNumber } from "../domain/palette.js";
 import { readPage, startChrome } from "../page/chrome.js";
+import { mountFindings } from "../photos/findings_list.js";
+import { mountPhotos } from "../photos/section.js";
 import { labelsOf } from "../record/labels.js";
 import { loadMission } from "../record/load.js";
 import { createPlayer, SPEEDS } from "../record/player.js";
@@ -355,6 +357,15 @@ startChrome({
   ],
 });
 
+mountPhotos(byId("report-photos-body"), {
+  query: `mission=${page.mission}`,
+  stated: { mission: page.mission },
+  canUpload: page.canFly,
+  notify(count, isMore) {
+    byId("report-photos-count").textContent = count ? `${numberText(count)}${isMore ? "+" : ""}` : "";
+  },
+});
+mountFindings(byId("report-findings"), `mission=${page.mission}`);
 await Promise.all([map.ready, read()]);
 show();
 document.documentElement.dataset.loaded = "true";

@@ -1,0 +1,45 @@
+"""The page on which photos are reviewed: an HTML shell, filled by the REST API."""
+
+from typing import Any
+from uuid import UUID
+
+from django.http import Http404
+
+from inspection.models import Asset
+from inspection.selectors import asset_label
+from missions.models import Mission
+from workspace.pages import SignedInPage
+
+
+class ReviewPage(SignedInPage):
+    """The photos of a mission or of an asset, one at a time."""
+
+    template_name = "review.html"
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        return {"subject": self._subject()}
+
+    def _subject(self) -> dict[str, Any]:
+        """Return whose photos are reviewed, and the page that this one leads back to; all photos without either."""
+        mission_text, asset_text = self.request.GET.get("mission", ""), self.request.GET.get("asset", "")
+        if mission_text:
+            mission = Mission.objects.filter(
+                organisation=self.request.user.organisation_id, deleted_at=None, pk=_uuid(mission_text)
+            ).first()
+            if mission is None:
+                raise Http404
+            return {"query": f"mission={mission.pk}", "name": mission.name, "back": f"/missions/{mission.pk}/report"}
+        if asset_text:
+            is_number = asset_text.isascii() and asset_text.isdigit() and len(asset_text) < 10
+            asset = Asset.objects.select_related("line").filter(pk=int(asset_text)).first() if is_number else None
+            if asset is None:
+                raise Http404
+            return {"query": f"asset={asset.pk}", "name": asset_label(asset), "back": "/assets"}
+        return {"query": "", "name": "", "back": "/"}
+
+
+def _uuid(text: str) -> UUID:
+    try:
+        return UUID(text)
+    except ValueError as error:
+        raise Http404 from error

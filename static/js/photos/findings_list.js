@@ -1,0 +1,78 @@
+/** A list of findings: the worst first, each with its state and the way to its photo. */
+
+import { ApiError, get } from "../api.js";
+import { h, icon, setChildren } from "../dom.js";
+import { t } from "../text.js";
+import { dayText } from "../units.js";
+import { FINDING_STATES, SEVERITIES } from "./words.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { InspectionFinding, InspectionFindingPage } from "../api_types.d.ts" */
+
+const SHOWN = 50;
+
+/** @param {HTMLElement} element @param {string} query of the findings and of their photos */
+export async function mountFindings(element, query) {
+  try {
+    const { data } = /** @type {Answer<InspectionFindingPage>} */ (await get(`/findings?${query}&limit=${SHOWN}`));
+    setChildren(
+      element,
+      data.results.length
+        ? h(
+            "ul",
+            { class: "finding-list" },
+            data.results.map((finding) => h("li", {}, findingRow(finding, query))),
+          )
+        : h("p", { class: "caption" }, t("No findings yet.")),
+      data.next && h("p", { class: "caption" }, t("The first {count} are shown.", { count: SHOWN })),
+      data.results.length > 0 &&
+        h(
+          "p",
+          { class: "finding-files caption" },
+          t("Export:"),
+          " ",
+          exportLink("csv", "CSV", query),
+          " ",
+          exportLink("geojson", "GeoJSON", query),
+        ),
+    );
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    setChildren(element, h("p", { class: "caption" }, error.message));
+  }
+}
+
+/** @param {string} kind @param {string} words @param {string} query */
+const exportLink = (kind, words, query) => h("a", { href: `/api/v1/findings.${kind}?${query}`, download: true }, words);
+
+/** @param {InspectionFinding} finding @param {string} query */
+function findingRow(finding, query) {
+  const photo = finding.evidence[0]?.medium;
+  const facts = [
+    FINDING_STATES[finding.state],
+    finding.asset_label,
+    finding.due_on && finding.state === "open" && t("due {day}", { day: dayText(finding.due_on) }),
+  ];
+  return [
+    severityMark(finding.severity),
+    h(
+      "span",
+      {},
+      photo
+        ? h("a", { href: `/review?${query}&medium=${photo}` }, finding.category_name)
+        : h("strong", {}, finding.category_name),
+      h("small", {}, facts.filter(Boolean).join(" · ")),
+      finding.note && h("small", {}, finding.note),
+    ),
+  ];
+}
+
+/** @param {number} severity */
+export const severityMark = (severity) =>
+  h(
+    "span",
+    { class: `severity severity-${severity}`, title: SEVERITIES[severity] },
+    severity <= 2 && icon("triangle-alert", "small"),
+    String(severity),
+    h("span", { class: "unseen" }, SEVERITIES[severity]),
+  );

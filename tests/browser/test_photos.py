@@ -1,0 +1,95 @@
+"""From a folder of photos to findings on an asset: dropped on a report, reviewed by keys, found again on the asset's record."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import TOO_WIDE, asks, stores_mission
+from tests.browser.test_accessibility import faults
+from tests.results.photos import dji_photo
+
+pytestmark = pytest.mark.browser
+
+PHONE: dict[str, Any] = {"theme": "dark", "size": (390, 844), "touch": True}
+READ_MS = 60_000  # three photos, by a worker
+
+
+def photos_of(page: Page, mission: str, folder: Path, day: int = 1) -> list[Path]:
+    """Three photos at the first target's tower, and a file that is no photo."""
+    [target, *_] = asks(page, mission)["targets"]
+    lon, lat = asks(page, f"/assets/{target['asset']}")["geometry"]["coordinates"]
+    paths = [folder / f"DJI_000{number}.JPG" for number in range(3)]
+    for number, path in enumerate(paths):
+        path.write_bytes(dji_photo(lon, lat, size=(800, 600), UTCAtExposure=f"2026-06-0{day}T08:00:0{number}"))
+    (folder / "notes.jpg").write_text("<html>" + " " * 200)
+    return [*paths, folder / "notes.jpg"]
+
+
+def test_photos_are_sent_reviewed_by_keys_and_found_on_their_asset(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.signs_in("opal")
+    mission = stores_mission(page, "Photos of two towers")
+    page.goto(f"{mission}/report")
+    files = page.locator("#report-photos input[type=file]")
+    files.set_input_files(photos_of(page, mission, tmp_path))
+    expect(page.locator(".photo-facts")).to_have_text("3 files uploaded. 1 failed.")
+    expect(page.get_by_role("alert").filter(has_text="notes.jpg")).to_contain_text("none of the supported kinds")
+    expect(page.locator("#report-photos .photo-thumb img")).to_have_count(3, timeout=READ_MS)
+    files.set_input_files(sorted(tmp_path.glob("DJI*")))
+    expect(page.locator(".photo-facts")).to_have_text("3 files uploaded. 1 failed.")  # those that are sent already are not sent again
+
+    page.get_by_role("link", name="Review photos").click()
+    expect(page.locator("#review-count")).to_have_text("1 of 3")
+    label = asks(page, mission)["targets"][0]["label"]
+    expect(page.locator("#review-placement")).to_contain_text(f"{label} Nearest target")
+    assert faults(page) == []
+    area = page.locator(".review-overlay").bounding_box()
+    assert area is not None
+    x, y, width, height = area["x"], area["y"], area["width"], area["height"]
+    page.mouse.move(x + 0.25 * width, y + 0.25 * height)
+    page.mouse.down()
+    page.mouse.move(x + 0.5 * width, y + 0.5 * height, steps=3)
+    page.mouse.up()
+    page.keyboard.press("c")
+    page.keyboard.type("ne")
+    page.keyboard.press("Enter")
+    page.keyboard.press("1")
+    expect(page.locator("#review-findings")).to_contain_text("Nest")
+    page.keyboard.press("j")
+    expect(page.locator("#review-count")).to_have_text("2 of 3")
+    page.keyboard.press("x")
+    expect(page.locator("#review-count")).to_have_text("3 of 3")
+    page.keyboard.press("s")
+    expect(page.locator("#review-findings")).to_contain_text("Nest")
+
+    first, second = asks(page, f"/findings?mission={mission.rpartition('/')[2]}")["results"][::-1]
+    [mark] = first["evidence"]
+    for name, expected in {"x": 200, "y": 150, "width": 200, "height": 150}.items():
+        assert mark["shape"][name] == pytest.approx(expected, abs=2), name
+    assert (first["severity"], first["asset_label"], second["evidence"][0]["shape"]) == (1, label, None)
+    assert {one["review"] for one in asks(page, f"/media?asset={first['asset']}")["results"]} == {"findings", "nothing"}
+
+    page.goto("/assets")
+    page.locator("#record-text").fill(label)
+    page.get_by_text(label, exact=True).first.click()
+    expect(page.locator("#record-show .finding-list li")).to_have_count(2)
+    expect(page.locator("#record-show .photo-thumb")).to_have_count(3)
+    visitor.complaints[:] = [words for words in visitor.complaints if "422" not in words]  # the file that is no photo
+
+
+def test_a_viewer_on_a_phone_sees_photos_and_can_change_nothing(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.signs_in("opal")
+    mission = stores_mission(page, "Photos for a viewer")
+    page.goto(f"{mission}/report")
+    page.locator("#report-photos input[type=file]").set_input_files(photos_of(page, mission, tmp_path, day=2)[:1])
+    expect(page.locator("#report-photos .photo-thumb img")).to_have_count(1, timeout=READ_MS)
+    page = visitor.signs_in("vera", **PHONE)
+    page.goto(f"/review?mission={mission.rpartition('/')[2]}")
+    expect(page.locator(".review-image")).to_be_visible()
+    assert page.locator("#review-form").is_hidden() and page.locator("#review-nothing").is_hidden()
+    assert faults(page) == [] and page.evaluate(TOO_WIDE) == []
+    page.goto(f"{mission}/report")
+    expect(page.locator("#report-photos .photo-thumb")).to_have_count(1)
+    expect(page.locator("#report-photos input[type=file]")).to_have_count(0)
