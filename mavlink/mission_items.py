@@ -6,6 +6,8 @@ position use the frame MISSION, the only one that PX4 accepts for them.
 
 Photos with a view are aimed by a region of interest, before the waypoint so that the UAV turns on its way. None looks straight down (see
 planning/views/detail_views.py): the bearing of a place under the UAV is noise, and the nose of one without a panning gimbal follows it.
+Where a gimbal pans, but not all around, ArduPilot does not turn the nose for a region of interest: CONDITION_YAW does, which PX4 knows in
+no mission and does not need (see supported_items).
 """
 
 import math
@@ -38,10 +40,14 @@ class CannotBeFlown(ValueError):
 
 @dataclass(frozen=True)
 class ItemRules:
-    """How tasks become items. The first photo is taken after hovering for `settle_s`, further ones every `photo_interval_s`."""
+    """How tasks become items. The first photo is taken after hovering for `settle_s`, further ones every `photo_interval_s`.
+
+    A photo with a view is alone; the UAV stays photo_s for it.
+    """
 
     settle_s: float = 2.0
     photo_interval_s: float = 2.0
+    photo_s: float = 1.0
     speed_step_mps: float = 0.01  # smaller differences count as the same speed
 
 
@@ -123,13 +129,22 @@ def _waypoint(waypoint: FrozenWaypoint, task: Task | None, *, is_stretch: bool, 
 
 def _aimed_photo(waypoint: FrozenWaypoint, task: Task, view: View, number: int, rules: ItemRules) -> Iterator[MissionItem]:
     """One photo; `number` counts those of the flight from 1, so that a repeated item takes no second one."""
-    settle_s = min(rules.settle_s, task.hold_s)
     place, height_m = aim_point(waypoint, view)
     yield _item(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, replace(waypoint, position=place), (0.0, 0.0, 0.0, 0.0), height_m)
-    yield _hold_at(waypoint, settle_s)
+    stays_s = max(task.hold_s - rules.photo_s, 0.0)
+    if view.heading_deg is None:
+        yield _hold_at(waypoint, stays_s)
+    else:
+        yield _hold_at(waypoint, 1.0)  # stopped: the next item turns the nose, which setting out to a waypoint would undo
+        yield _plain(mavlink.MAV_CMD_CONDITION_YAW, (view.heading_deg, 0.0, 0.0, 0.0), waypoint)
+        yield _delay(waypoint, stays_s - 1.0)
     yield _plain(mavlink.MAV_CMD_IMAGE_START_CAPTURE, (0.0, 0.0, 1.0, float(number)), waypoint)
-    rest_s = max(float(math.ceil(task.hold_s - settle_s)), 1.0)  # the photo is taken before the UAV sets out
-    yield _plain(mavlink.MAV_CMD_NAV_DELAY, (rest_s, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK), waypoint)
+    yield _delay(waypoint, rules.photo_s)  # the photo is taken before the UAV sets out
+
+
+def _delay(waypoint: FrozenWaypoint, seconds: float) -> MissionItem:
+    whole_s = max(float(math.ceil(seconds)), 1.0)
+    return _plain(mavlink.MAV_CMD_NAV_DELAY, (whole_s, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK), waypoint)
 
 
 def aim_point(waypoint: FrozenWaypoint, view: View) -> tuple[LonLat, float]:

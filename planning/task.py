@@ -8,7 +8,8 @@ from typing import Any
 from planning.views.camera import Camera, camera_from_json, camera_to_json
 
 MAX_HOLD_S = 3_600.0
-VIEWS_HOLD_S = 3.0  # at each photo of a view plan: until the UAV stands still and has turned, and for the photo
+VIEWS_HOLD_S = 3.0  # at each photo of a view plan: until the UAV and its camera stand still, and for the photo
+TURN_S = 3.0  # longer where the UAV has to turn its nose: half a turn at the usual 60 degrees a second
 MM_PER_M = 1_000.0
 
 
@@ -36,7 +37,8 @@ class View:
     """How one photo is taken.
 
     yaw_deg: of the camera from true north, clockwise; pitch_deg: 0 is the horizon, -90 straight down; distance_m: along the optical axis
-    to what it shows; clearance_m: which the flight through this photo and its neighbours keeps from wires and supports.
+    to what it shows; clearance_m: which the flight through this photo and its neighbours keeps from wires and supports; heading_deg: of
+    the UAV's nose, where the gimbal cannot pan all around; None: any.
     """
 
     yaw_deg: float
@@ -44,6 +46,7 @@ class View:
     distance_m: float
     focal_length_mm: float
     clearance_m: float
+    heading_deg: float | None = None
 
 
 @dataclass(frozen=True)
@@ -83,11 +86,7 @@ def task_to_json(task: Task) -> dict[str, Any]:
     if task.views is not None:
         value["views"] = views_to_json(task.views)
     if task.view is not None:
-        view = task.view
-        value["view"] = {
-            "yaw_deg": view.yaw_deg, "pitch_deg": view.pitch_deg, "distance_m": view.distance_m,
-            "focal_length_mm": view.focal_length_mm, "clearance_m": view.clearance_m,
-        }  # fmt: skip
+        value["view"] = vars(task.view).copy()
     return value
 
 

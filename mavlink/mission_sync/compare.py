@@ -18,7 +18,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
-from mavlink.mission_sync.supported_items import as_old_roi
+from mavlink.mission_sync.supported_items import as_old_roi, as_px4
 from mavlink.mission_sync.wire import OnboardItem, OnboardList
 from mavlink.vehicle_plan import MissionItem
 from operation.reasons import Reason
@@ -126,6 +126,7 @@ ARDUPILOT_KEEPS = {
     mavlink.MAV_CMD_DO_SET_ROI_NONE: (WHOLE, NOTHING, NOTHING, NOTHING),
     mavlink.MAV_CMD_DO_SET_ROI: (WHOLE, NOTHING, NOTHING, NOTHING),
     mavlink.MAV_CMD_IMAGE_START_CAPTURE: (WHOLE, ALL, WHOLE, WHOLE),
+    mavlink.MAV_CMD_CONDITION_YAW: (ALL, ALL, WHOLE, WHOLE),
     mavlink.MAV_CMD_DO_SET_SERVO: (WHOLE, WHOLE, NOTHING, NOTHING),
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
@@ -198,6 +199,8 @@ def is_same(wanted: MissionItem, held: MissionItem, autopilot_type: AutopilotTyp
 def _of_item(wanted: MissionItem, held: MissionItem, autopilot_type: AutopilotType) -> Iterator[tuple[str, str, str]]:
     if autopilot_type is AutopilotType.ARDUPILOT and held.command == mavlink.MAV_CMD_DO_SET_ROI:
         wanted = as_old_roi(wanted)
+    if autopilot_type is AutopilotType.PX4:
+        wanted = as_px4(wanted)
     if wanted.command != held.command:
         yield "command", str(wanted.command), str(held.command)
         return

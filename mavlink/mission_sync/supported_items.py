@@ -2,6 +2,7 @@
 
 ArduPilot accepts DO_SET_ROI_LOCATION and DO_SET_ROI_NONE as mission items since 4.7 (its pull request 29567), IMAGE_START_CAPTURE since 4.4
 (23147), and DO_SET_ROI in every version. A DO_SET_ROI without position and altitude ends the region of interest (its AC_AutoYaw::set_roi).
+PX4 refuses CONDITION_YAW in missions (its mavlink_mission.cpp); it turns its nose to a region of interest by itself (MIS_MNT_YAW_CTL 0).
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,8 +37,17 @@ def as_old_roi(item: MissionItem) -> MissionItem:
     return item
 
 
+def as_px4(item: MissionItem) -> MissionItem:
+    """Return CONDITION_YAW as a delay of 0 s; other items unchanged. The list keeps its length, and items their places."""
+    if item.command != mavlink.MAV_CMD_CONDITION_YAW:
+        return item
+    return replace(item, command=mavlink.MAV_CMD_NAV_DELAY, parameters=(0.0, -1.0, -1.0, -1.0))
+
+
 def as_known(items: Sequence[MissionItem], autopilot_type: AutopilotType, firmware: Version | None) -> tuple[MissionItem, ...]:
     """Return the items as this firmware accepts them. An unknown version counts as an old one."""
+    if autopilot_type is AutopilotType.PX4:
+        return tuple(map(as_px4, items))
     if autopilot_type is not AutopilotType.ARDUPILOT or (firmware is not None and firmware >= ROI_SINCE):
         return tuple(items)
     return tuple(map(as_old_roi, items))

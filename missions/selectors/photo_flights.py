@@ -25,7 +25,7 @@ from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.jobs.planning_lock import hold_planning_lock
 
 KEPT_S = 7 * 86_400
-VERSION = 2  # counts the changes of what a flight is planned by, or is kept as
+VERSION = 3  # counts the changes of what a flight is planned by, or is kept as
 
 AnyTarget = TypeVar("AnyTarget", bound=ResolvedTarget)
 OnPhotos = Callable[[int, int], None]  # of targets with photos: so many are planned, of so many
@@ -46,7 +46,7 @@ def planned_views(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, Detail
 
 def keep_photo_flight(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: DetailPlan, version: DatasetVersion) -> None:
     """Keep the flight of a plan of photos, so that a mission with them is planned at once."""
-    _keep(_key(asset.pk, views, version), _flight(found, plan))
+    _keep(_key(asset.pk, views, version), _flight(found, plan, views))
 
 
 def with_photo_flights(targets: Sequence[AnyTarget], version: DatasetVersion, on_photos: OnPhotos) -> list[AnyTarget]:
@@ -73,7 +73,7 @@ def _photo_flight(asset: Asset, views: ViewsRequest, version: DatasetVersion) ->
     if kept is not None:
         return kept
     try:
-        flight: PhotoFlight | Reason = _flight(*planned_views(asset, views))
+        flight: PhotoFlight | Reason = _flight(*planned_views(asset, views), views)
     except NotATower:
         return Reason("photos_not_a_tower")
     except TooManyPhotos:
@@ -84,13 +84,13 @@ def _photo_flight(asset: Asset, views: ViewsRequest, version: DatasetVersion) ->
     return flight
 
 
-def _flight(found: TowerOnMap, plan: DetailPlan) -> PhotoFlight | Reason:
+def _flight(found: TowerOnMap, plan: DetailPlan, views: ViewsRequest) -> PhotoFlight | Reason:
     if found.base_amsl_m is None:
         return Reason("photos_need_terrain")
     if not len(plan.poses):
         return Reason("photos_none_possible")
     try:
-        return photo_flight(plan, found.frame, found.base_amsl_m, found.ground_m, found.site.clearance_m)
+        return photo_flight(plan, found.frame, found.base_amsl_m, found.ground_m, found.site.clearance_m, views.camera.gimbal)
     except GroundUnknown:
         return Reason("photos_need_terrain")
 

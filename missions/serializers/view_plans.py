@@ -124,6 +124,7 @@ class ViewSerializer(serializers.Serializer):
     distance_m = serializers.FloatField(help_text="along the optical axis to what it shows")
     focal_length_mm = serializers.FloatField()
     clearance_m = serializers.FloatField(help_text="which the flight through these photos keeps from wires and supports")
+    heading_deg = serializers.FloatField(allow_null=True, help_text="of the UAV's nose, where the gimbal cannot pan all around; null: any")
 
 
 class TowerModelSerializer(serializers.Serializer):

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from planning.task import Task, TaskKind
+from planning.task import TURN_S, Task, TaskKind
 from planning.trajectory.waypoints import NONE, PASS, TARGET, FloatArray, IntArray, RoutePoints, Waypoints
 from planning.views.photo_flight import BEND_HOLD_S, SPEED_MPS, PhotoFlight
 
@@ -74,7 +74,10 @@ def _flown(waypoints: Waypoints, place: int, flight: PhotoFlight, task: Task) ->
     assert waypoints.amsl_m is not None  # noqa: S101 - checked by the caller
     points, count = waypoints.points, len(flight) + 1
     tasks = {stop: Task(TaskKind.HOLD, BEND_HOLD_S) for stop in np.flatnonzero(flight.stops).tolist()}
-    tasks |= {photo: Task(TaskKind.PHOTO, task.hold_s, view=view) for photo, view in flight.view.items()}
+    tasks |= {
+        photo: Task(TaskKind.PHOTO, task.hold_s + (0.0 if view.heading_deg is None else TURN_S), view=view)
+        for photo, view in flight.view.items()
+    }
     flown = RoutePoints(
         np.concatenate([flight.position, points.position[place : place + 1]]),
         np.append(flight.agl_m, points.agl_m[place]),

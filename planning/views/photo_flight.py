@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from inspection.geodesy.local_frame import LocalFrame
-from planning.task import View
+from planning.task import TURN_S, View
+from planning.views.camera import Gimbal
 from planning.views.detail_views import DetailPlan
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO, SAME_PLACE_M
@@ -17,6 +18,7 @@ from planning.views.visibility import BoolArray
 SPEED_MPS = 4.0  # from photo to photo, beside wires
 BEND_HOLD_S = 1.0  # where the flight bends: the UAV stops, so that it does not cut the corner
 MAX_OFF_M = 0.4  # of the height above ground at a place from the straight line between those of the waypoints
+WHOLE_TURN_DEG = 350.0  # a range of pan above which any direction is reached
 STEP_M = 2.0  # between places whose ground is looked at
 POSITION_DIGITS, HEIGHT_DIGITS, ANGLE_DIGITS = 8, 2, 1
 
@@ -61,14 +63,15 @@ class PhotoFlight:
 
 
 def photo_flight(
-    plan: DetailPlan, frame: LocalFrame, base_amsl_m: float, ground_m: Callable[[FloatArray], FloatArray], clearance_m: float
-) -> PhotoFlight:
+    plan: DetailPlan, frame: LocalFrame, base_amsl_m: float, ground_m: Callable[[FloatArray], FloatArray], clearance_m: float,
+    gimbal: Gimbal,
+) -> PhotoFlight:  # fmt: skip
     """Return the flight of a plan whose heights count from the target's foot, base_amsl_m above the sea.
 
     ground_m: of places (n, 2) [m], over that. Waypoints are put in where the ground bends, so that heights above it are straight lines
     between waypoints, but for MAX_OFF_M. Raises GroundUnknown.
     """
-    flight = plan.flight
+    flight, turns_nose = plan.flight, not _pans_around(gimbal)
     points, photos = [flight.position[0]], [int(flight.photo[0])]
     stops = [True]
     for (start, end), photo in zip(pairwise(flight.position), flight.photo[1:].tolist(), strict=True):
@@ -82,10 +85,11 @@ def photo_flight(
     agl_m = position[:, 2] - ground_m(position[:, :2])
     if np.isnan(agl_m).any():
         raise GroundUnknown
+    yaw_deg, pitch_deg = np.round(plan.poses.yaw_deg, ANGLE_DIGITS) % 360.0, np.round(plan.poses.pitch_deg, ANGLE_DIGITS)
     views = {
         place: View(
-            round(float(plan.poses.yaw_deg[photo]), ANGLE_DIGITS) % 360.0, round(float(plan.poses.pitch_deg[photo]), ANGLE_DIGITS),
-            round(float(plan.distance_m[photo]), HEIGHT_DIGITS), plan.lens.focal_mm, round(clearance_m, HEIGHT_DIGITS),
+            float(yaw_deg[photo]), float(pitch_deg[photo]), round(float(plan.distance_m[photo]), HEIGHT_DIGITS), plan.lens.focal_mm,
+            round(clearance_m, HEIGHT_DIGITS), float(yaw_deg[photo]) if turns_nose else None,
         )
         for place, photo in enumerate(photos) if photo != NO_PHOTO
     }  # fmt: skip
@@ -97,8 +101,17 @@ def photo_flight(
         views,
         clearance_m,
         flight.length_m,
-        plan.seconds,
+        plan.seconds + (TURN_S * len(views) if turns_nose else 0.0),
     )
+
+
+def _pans_around(gimbal: Gimbal) -> bool:
+    """Whether the camera looks in every direction without the UAV's turning for it on purpose.
+
+    Without a range of yaw the UAV follows the region of interest by itself.
+    """
+    low_deg, high_deg = gimbal.yaw_min_deg, gimbal.yaw_max_deg
+    return low_deg is None or high_deg is None or high_deg - low_deg >= WHOLE_TURN_DEG
 
 
 def _ground_bends(start: FloatArray, end: FloatArray, ground_m: Callable[[FloatArray], FloatArray]) -> list[FloatArray]:

@@ -81,7 +81,8 @@ class Settings:
     """Settings of the autopilot. Heights are metres above the take-off, shares are percent of a full battery.
 
     `return_adds_to_rally_point`: the RTL height is measured from a rally point's own height, as PX4 does; else the higher of both is flown,
-    as ArduPilot does.
+    as ArduPilot does. `turns_to_target`: the nose turns to what the gimbal looks at, as PX4's does (MIS_MNT_YAW_CTL 0); else only that of a
+    UAV whose gimbal has no pan, as ArduPilot's.
 
     Defaults are those of PX4 v1.15 where it has them: MIS_TAKEOFF_ALT 2.5, RTL_RETURN_ALT 60 (30 here: inspections fly low), RTL_MIN_DIST
     10 (0 here, with RTL_CONE_ANG 0: it climbs at any distance from home), BAT_LOW_THR 15 %, BAT_CRIT_THR 7 %, NAV_ACC_RAD 10 (2 here: a
@@ -102,3 +103,4 @@ class Settings:
     gps_lost_patience_s: float = 10.0
     gps_lost_action: OwnAction = OwnAction.LAND
     disarm_on_ground_s: float = 10.0
+    turns_to_target: bool = True

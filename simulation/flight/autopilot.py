@@ -179,7 +179,7 @@ class Autopilot:
         if not context.is_in_air and not self.manoeuvre.lifts_off:
             up = -1.0
         u, v, _ = command.along
-        if context.gimbal.target is not None and not context.gimbal.pans:
+        if context.gimbal.target is not None and (context.settings.turns_to_target or not context.gimbal.pans):
             x, y = context.gimbal.target[0] - context.here[0], context.gimbal.target[1] - context.here[1]
             if math.hypot(x, y) > 0.5:
                 self._heading_rad = math.atan2(x, y)

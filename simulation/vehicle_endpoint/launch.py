@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from inspection.geodesy import LonLat
 from planning.views.camera import Camera
-from simulation.flight.airframe import AIRFRAMES, Airframe
+from simulation.flight.airframe import AIRFRAMES, Airframe, Settings
 from simulation.flight.camera import SIMULATED_CAMERA
 from simulation.flight.faults import Faults, Weather
 from simulation.flight.plant import FlatGround, GroundElevation
@@ -56,6 +56,7 @@ def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
                 battery_percent=launch.battery_percent,
                 faults=launch.faults,
                 camera=launch.camera,
+                settings=Settings(turns_to_target=launch.autopilot_type is not SimulatedAutopilot.ARDUPILOT),
             )
             uavs.append(FlyingUav(uav, launch.system, Radio(launch.talks_to, launch.listens_at), launch.autopilot_type, launch.key))
     except BaseException:

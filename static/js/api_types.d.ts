@@ -8610,6 +8610,11 @@ export interface components {
              * @description which the flight through these photos keeps from wires and supports
              */
             clearance_m: number;
+            /**
+             * Format: double
+             * @description of the UAV's nose, where the gimbal cannot pan all around; null: any
+             */
+            heading_deg: number | null;
         };
         ViewCoverage: {
             /** Format: double */

@@ -12,7 +12,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import BASE, HOVER, LAND, RETURN, NotARoute, photo_clearances_m, route_from_json, route_to_json
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_items import CannotBeFlown, aim_point, flight_loads
+from mavlink.mission_sync.compare import differences
+from mavlink.mission_sync.supported_items import as_known
+from mavlink.mission_sync.wire import OnboardItem
 from mavlink.vehicle_plan import FlightLoad, MissionItem, load_from_json, load_to_json
 from planning.task import Task, TaskKind, View
 from planning.trajectory.waypoints import WaypointKind
@@ -218,3 +222,20 @@ def test_the_legs_of_photos_are_those_between_two_waypoints_of_their_target() ->
     other = waypoint(4, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 3.0), target=1)
     points = [waypoint(1, WaypointKind.TARGET, target=0), aimed, waypoint(3, WaypointKind.PASS, target=0), other]
     assert photo_clearances_m(points) == {2: 8.9, 3: 8.9}
+
+
+def test_a_gimbal_that_does_not_pan_around_has_the_nose_turned_once_it_stands() -> None:
+    turned = replace(view(200.0), heading_deg=200.0)
+    waypoints = (waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 6.0, view=turned), target=0),)
+    (load,) = flight_loads(start_and_end(*waypoints))
+    mission = load.mission
+    assert commands(mission[3:9]) == [LOOK_AT, WAYPOINT, mavlink.MAV_CMD_CONDITION_YAW, DELAY, PHOTO, DELAY]
+    assert mission[5].parameters == (200.0, 0.0, 0.0, 0.0), "the shorter way, from north"
+    assert [item.parameters[0] for item in (mission[4], mission[6], mission[8])] == [1.0, 4.0, 1.0], "six seconds in all"
+    assert as_known(mission, AutopilotType.ARDUPILOT, (4, 7, 0)) == mission
+    on_px4 = as_known(mission, AutopilotType.PX4, None)
+    assert mavlink.MAV_CMD_CONDITION_YAW not in commands(on_px4)
+    assert len(on_px4) == len(mission)
+    assert on_px4[5].parameters[0] == 0.0
+    held = tuple(OnboardItem(item, goes_on=True) for item in on_px4)
+    assert not differences(mission, held, AutopilotType.PX4), "the readback is that of the approved list"

@@ -43,7 +43,7 @@ def planned(slope: float = 0.0) -> DetailPlan:
 
 def flown(slope: float = 0.0) -> PhotoFlight:
     clearance_m = standing(TOWERS[TOWER]).clearance_m
-    return photo_flight(planned(slope), FRAME, BASE_M, lambda places: slope * places[:, 0], clearance_m)
+    return photo_flight(planned(slope), FRAME, BASE_M, lambda places: slope * places[:, 0], clearance_m, ZOOM.gimbal)
 
 
 def test_it_has_every_photo_in_order_and_stops_at_all_but_ground_points() -> None:
@@ -74,7 +74,7 @@ def test_between_its_waypoints_heights_above_ground_are_nearly_straight(rise_m: 
     def waves(places: FloatArray) -> FloatArray:
         return rise_m * np.sin(places[:, 0] / length_m + phase) * np.cos(places[:, 1] / length_m) - rise_m * np.sin(phase)
 
-    flight = photo_flight(planned(), FRAME, BASE_M, waves, 5.0)
+    flight = photo_flight(planned(), FRAME, BASE_M, waves, 5.0, ZOOM.gimbal)
     places = np.column_stack([FRAME.to_metres(flight.position), flight.amsl_m - BASE_M])
     for place, (start, end) in enumerate(pairwise(places)):
         shares = np.linspace(0.0, 1.0, 30)[:, None]
@@ -89,7 +89,7 @@ def test_ground_that_is_not_known_under_a_part_of_it_is_refused() -> None:
         return np.where(places[:, 0] > 5.0, np.nan, 0.0)
 
     with pytest.raises(GroundUnknown):
-        photo_flight(planned(), FRAME, BASE_M, gap, 5.0)
+        photo_flight(planned(), FRAME, BASE_M, gap, 5.0, ZOOM.gimbal)
 
 
 def test_it_is_the_same_after_json() -> None:

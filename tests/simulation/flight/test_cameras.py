@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from mavlink.vehicle_plan import MissionItem
 from planning.views.camera import Gimbal
-from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.airframe import AIRFRAMES, Settings
 from simulation.flight.camera import SIMULATED_CAMERA, CameraShutter, Shot, lens_offset_m
 from simulation.flight.events import Event, PhotoTaken
 from simulation.flight.flown import fly_mission
@@ -130,12 +130,13 @@ def test_photo_of_a_region_of_interest_is_aimed_at_it(gimbal: Gimbal, weather: o
     assert flown.end.gimbal.pitch_deg == pytest.approx(0.0), "ahead again"
 
 
-def test_a_gimbal_with_yaw_does_not_turn_the_uav():
-    uav = uav_of()
+@pytest.mark.parametrize("turns_to_target", [False, True], ids=["ArduPilot", "PX4"])
+def test_a_gimbal_with_yaw_turns_the_uav_on_px4_alone(turns_to_target: bool):
+    uav = uav_of(settings=Settings(turns_to_target=turns_to_target))
     assert uav.load([take_off(), ROI, waypoint(60.0, 0.0, 10.0, 3.0)]).is_done
     begin(uav)
     step(uav, 25.0)
-    assert off_deg(uav.state.heading_deg, 90.0) < 3.0
+    assert (off_deg(uav.state.heading_deg, 90.0) < 3.0) is not turns_to_target
     assert off_deg(uav.state.heading_deg + uav.state.gimbal.yaw_deg, math.degrees(math.atan2(-20.0, 25.0))) < 2.0
 
 
