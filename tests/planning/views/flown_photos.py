@@ -54,13 +54,6 @@ def flown(stands: StandingTower, plan: DetailPlan, camera: Camera, code: Named, 
     uav = SimulatedUav(
         AIRFRAMES["inspector"], route.take_off.position, weather=weather, seed=33, camera=camera, settings=settings
     )  # fmt: skip
-        AIRFRAMES["inspector"],
-        route.take_off.position,
-        weather=weather,
-        seed=33,
-        camera=camera,
-        settings=Settings(turns_to_target=turns_to_target),
-    )
     if not uav.load(flight_loads(route)[0].mission).is_done:
         raise RuntimeError("the UAV does not take the items")
     log = fly_mission(uav)
