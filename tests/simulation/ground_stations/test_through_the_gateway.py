@@ -9,7 +9,7 @@ from missions.models import CommandKind, CommandState, Mission, MissionState, Ta
 from missions.services import TargetRequest
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission, load_of
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot

@@ -17,7 +17,7 @@ from examples.companion.link import Answer, HttpLink, LinkDown
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, UavCommand
 from missions.services import TargetRequest
 from missions.services.commands.dispatch import abort_mission
-from planning.problem import Task, TaskKind
+from planning.task import Task, TaskKind
 from telemetry.models import Capture, InspectionResult, TelemetryRecord, UavLink
 from telemetry.views.uav_authentication import UavRate
 from tests.missions.flights import an_operator, dispatched
