@@ -45,7 +45,21 @@ def mail_settings(address: str) -> dict[str, Any]:
 
 
 def media_storage(folder: Path) -> dict[str, Any]:
-    """Return Django's storage of photos and videos: SPANWISE_MEDIA_DIR, else this folder, readable by this user only."""
+    """Return Django's storage of photos and videos: a bucket of SPANWISE_MEDIA_BUCKET, else a folder that only this user reads.
+
+    The folder is SPANWISE_MEDIA_DIR, else the given one. boto3 reads credentials and region from its own variables.
+    """
+    if bucket := os.environ.get("SPANWISE_MEDIA_BUCKET"):
+        endpoint = os.environ.get("SPANWISE_MEDIA_ENDPOINT") or None
+        options: dict[str, Any] = {
+            "bucket_name": bucket,
+            "endpoint_url": endpoint,
+            "addressing_style": "path" if endpoint else "auto",  # own servers have no name for each bucket
+            "signature_version": "s3v4",
+            "file_overwrite": True,  # names are hashes
+            "max_memory_size": 16 * 2**20,
+        }
+        return {"BACKEND": "storages.backends.s3.S3Storage", "OPTIONS": options}
     location = os.environ.get("SPANWISE_MEDIA_DIR") or str(folder)
     options = {"location": location, "file_permissions_mode": 0o600, "directory_permissions_mode": 0o700}
     return {"BACKEND": "django.core.files.storage.FileSystemStorage", "OPTIONS": options}

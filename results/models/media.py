@@ -9,6 +9,7 @@ from django.db.models.functions import Now
 
 from inspection.models import Asset
 from missions.models import InspectionTarget, Mission, Uav
+from telemetry.models import Capture
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
 MAX_FILE_NAME_LENGTH = 200
@@ -83,6 +84,9 @@ class Medium(models.Model):
     uav = models.ForeignKey(Uav, on_delete=models.SET_NULL, null=True, blank=True, related_name="media")
     target = models.ForeignKey(InspectionTarget, on_delete=models.SET_NULL, null=True, blank=True, related_name="media")
     asset = models.ForeignKey(Asset, on_delete=models.SET_NULL, null=True, blank=True, related_name="media")
+    capture = models.ForeignKey(
+        Capture, on_delete=models.SET_NULL, null=True, blank=True, related_name="media", help_text="the UAV's report of it"
+    )
     placement = models.CharField(max_length=10, choices=Placement.choices, default=Placement.WAITING, db_default=Placement.WAITING)
     candidates = models.JSONField(default=list, db_default=[], blank=True, help_text="at most two targets that come into question")
     review = models.CharField(

@@ -61,6 +61,7 @@ class MediumSerializer(answers.Serializer):
     target_label = answers.CharField(allow_blank=True)
     asset = answers.IntegerField(allow_null=True)
     asset_label = answers.CharField(allow_blank=True)
+    capture = answers.IntegerField(allow_null=True, help_text="the UAV's report of it, where one was found by time and position")
     placement = answers.ChoiceField(choices=Placement.choices, help_text="how it is known what it shows")
     candidates = CandidateSerializer(many=True, help_text="at most two targets that come into question")
     review = answers.ChoiceField(choices=Review.choices, allow_blank=True, help_text="empty: nobody has looked at it")
@@ -178,6 +179,7 @@ def medium_json(medium: Medium, asset_labels: dict[int, str]) -> dict[str, Any]:
         "target": medium.target_id,
         "target_label": medium.target.label if medium.target is not None else "",
         "asset": medium.asset_id,
+        "capture": medium.capture_id,
         "asset_label": asset_labels.get(medium.asset_id or 0, ""),
         "original": reverse("api-medium-file", args=[medium.pk]),
         "previews": {edge: reverse("api-medium-preview", args=[medium.pk, int(edge)]) for edge in medium.derivatives},

@@ -1,4 +1,4 @@
-"""Decides what media show: what was stated with the upload, else the target next to position and time, else nothing."""
+"""Decides what media show: what was stated with the upload, else what the UAV reported, else the target next to them, else nothing."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,11 +10,10 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.models import Asset
 from missions.models import InspectionTarget, Mission
 from results.matching.nearest import PhotoPlace, Placing, TargetPlace, place_photo
-from results.models import Medium, Placement, TakenAtSource
+from results.models import Medium, Placement
+from results.services.captures import CERTAIN_TIMES, capture_of, target_of_capture
 from workspace.audit import record_change
 from workspace.models import User
-
-CERTAIN_TIMES = {TakenAtSource.GPS, TakenAtSource.CAMERA, TakenAtSource.USER}  # in a stated zone
 
 
 def place_medium(medium: Medium) -> None:
@@ -24,6 +23,12 @@ def place_medium(medium: Medium) -> None:
             medium.target = _only_target(medium.mission_id, medium.asset_id)
         return
     medium.placement, medium.candidates = Placement.UNPLACED, []
+    if (capture := capture_of(medium)) is not None:
+        medium.capture, medium.uav_id = capture, capture.uav_id
+        medium.mission_id = medium.mission_id or capture.mission_id
+        if (target := target_of_capture(capture)) is not None:
+            medium.target, medium.asset, medium.placement = target, target.asset, Placement.CAPTURED
+            return
     if medium.mission_id is None or medium.position is None:
         return
     targets = {row.pk: row for row in InspectionTarget.objects.filter(mission=medium.mission_id).select_related("asset")}

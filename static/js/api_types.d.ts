@@ -3646,6 +3646,8 @@ export interface components {
             target_label: string;
             asset: number | null;
             asset_label: string;
+            /** @description the UAV's report of it, where one was found by time and position */
+            capture: number | null;
             /**
              * @description how it is known what it shows
              *

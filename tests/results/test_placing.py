@@ -1,17 +1,22 @@
 """Photos are placed at the target that they were stated for, or that is clearly the nearest; all others stay unplaced."""
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
+from django.contrib.gis.geos import Point
 from django.test import Client
 
-from missions.models import InspectionTarget, Mission
+from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint
+from results.matching.captures import CapturePlace, capture_of_photo
 from results.matching.nearest import PhotoPlace, TargetPlace, place_photo
 from results.models import Placement
 from results.services.reading import read_waiting
+from telemetry.models import Capture
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
+from tests.missions.commands.outbox import a_uav
 from tests.results.photos import dji_photo, exif_of, file_of, picture
 from tests.results.sending import begin, upload_and_read
 from workspace.models import AuditEntry
@@ -68,6 +73,79 @@ def test_a_photo_of_a_mission_is_placed_at_the_nearest_target(client: Client) ->
     assert (medium.placement, medium.target, medium.asset) == (Placement.NEAREST, second, second.asset)
     [best] = medium.candidates
     assert (best["target"], best["distance_m"], best["is_in_visit"]) == (second.pk, pytest.approx(18.7, abs=0.1), None)
+
+
+def reported(mission: Mission, lon: float, seconds: float, waypoint: int | None, **facts: Any) -> Capture:
+    """A photo that the mission's UAV reported, at some seconds after AT."""
+    uav = mission.mission_uavs.get().uav
+    return Capture.objects.create(
+        uav=uav, mission=mission, waypoint_sequence=waypoint, taken_at=AT + timedelta(seconds=seconds), time_source="utc",
+        received_at=AT, position=Point(lon, 56.0, srid=4326), **facts,
+    )  # fmt: skip
+
+
+def flown_mission() -> Mission:
+    """Two towers 62 m apart, between which positions do not decide, and a route with a waypoint at each."""
+    mission = mission_of(10.000, 10.001)
+    start = Point(10.0, 56.0, srid=4326)
+    flies = MissionUav.objects.create(mission=mission, uav=a_uav("Tern"), sequence=0, start=start, cruise_speed_mps=12.0)
+    route = Route.objects.create(mission=mission, mission_uav=flies, graph_version=1, length_m=1.0, duration_s=1.0)
+    for sequence, target in enumerate(mission.targets.order_by("sequence"), start=1):
+        Waypoint.objects.create(
+            route=route, sequence=sequence, kind="target", position=start, target=target, altitude_agl_m=30.0, altitude_relative_m=30.0
+        )
+    return mission
+
+
+def test_the_uavs_report_of_the_photo_names_its_waypoint(client: Client) -> None:
+    mission = flown_mission()
+    reported(mission, 10.0005, -30.0, 1)
+    capture = reported(mission, 10.0005, 0.4, 2)
+    medium = upload_and_read(client, dji_photo(10.0005), mission=str(mission.pk))
+    assert (medium.placement, medium.target, medium.capture) == (Placement.CAPTURED, mission.targets.get(sequence=1), capture)
+    assert medium.uav == capture.uav
+    assert client.get(f"/api/v1/media/{medium.pk}").json()["capture"] == capture.pk
+
+
+def test_the_uavs_report_names_the_mission_of_a_photo_that_states_none(client: Client) -> None:
+    mission = flown_mission()
+    reported(mission, 10.0005, 0.0, 1)
+    medium = upload_and_read(client, dji_photo(10.0005))
+    assert (medium.mission, medium.target) == (mission, mission.targets.get(sequence=0))
+
+
+@pytest.mark.parametrize(
+    ("lon", "seconds", "facts"),
+    [(10.0005, 10.0, {}), (10.01, 0.0, {}), (10.0005, 0.0, {"is_taken": False})],
+    ids=["another time", "another place", "the camera failed"],
+)
+def test_a_report_of_elsewhere_or_of_another_time_says_nothing(client: Client, lon: float, seconds: float, facts: dict[str, Any]) -> None:
+    mission = flown_mission()
+    reported(mission, lon, seconds, 1, **facts)
+    medium = upload_and_read(client, dji_photo(10.0005), mission=str(mission.pk))
+    assert (medium.placement, medium.capture, len(medium.candidates)) == (Placement.UNPLACED, None, 2)
+
+
+@pytest.mark.parametrize(
+    ("captures", "chosen"),
+    [
+        ([(1, "a", 0.0), (2, "b", 2.0)], 1),
+        ([(1, "a", 0.3), (2, "b", -0.5)], None),  # two waypoints about as near in time
+        ([(1, "a", 0.3), (2, "a", -0.5)], 1),  # of one waypoint either will do
+        ([(1, "a", 3.5)], None),
+        ([], None),
+    ],
+)
+def test_only_a_clear_report_is_chosen(captures: list[tuple[int, str, float]], chosen: int | None) -> None:
+    places = [CapturePlace(key, group, taken_s, 3.0, 4.0) for key, group, taken_s in captures]
+    assert capture_of_photo(0.0, places) == chosen
+
+
+def test_the_bounds_of_a_report_widen_what_is_near() -> None:
+    wide = CapturePlace(1, "a", 8.0, 60.0, 0.0, time_bound_s=6.0, position_bound_m=40.0)
+    assert capture_of_photo(0.0, [wide]) == 1
+    assert capture_of_photo(0.0, [replace(wide, position_bound_m=30.0)]) is None
+    assert capture_of_photo(0.0, [replace(wide, time_bound_s=4.0)]) is None
 
 
 def test_between_two_targets_it_stays_unplaced_with_both(client: Client) -> None:

@@ -419,4 +419,5 @@ startChrome({
     { keys: ["escape"], words: t("Remove the box"), whileTyping: true, act: () => picture.clear() },
   ],
 });
-attempt(start);
+await attempt(start);
+document.documentElement.dataset.loaded = "true";

@@ -16,6 +16,7 @@ BASES = {  # each lock adds to one
     "requirements.txt": None,
     "requirements-dev.txt": "requirements.txt",
     "requirements-benchmarks.txt": "requirements-dev.txt",
+    "requirements-s3.txt": "requirements.txt",
     "requirements-tracing.txt": "requirements.txt",
     "requirements-deploy.txt": None,
 }
