@@ -85,8 +85,9 @@ class Medium(models.Model):
     target = models.ForeignKey(InspectionTarget, on_delete=models.SET_NULL, null=True, blank=True, related_name="media")
     asset = models.ForeignKey(Asset, on_delete=models.SET_NULL, null=True, blank=True, related_name="media")
     capture = models.ForeignKey(
-        Capture, on_delete=models.SET_NULL, null=True, blank=True, related_name="media", help_text="the UAV's report of it"
-    )
+        Capture, on_delete=models.SET_NULL, null=True, blank=True, db_constraint=False, related_name="media",
+        help_text="the UAV's report of it; telemetry is forgotten before media are",
+    )  # fmt: skip
     placement = models.CharField(max_length=10, choices=Placement.choices, default=Placement.WAITING, db_default=Placement.WAITING)
     candidates = models.JSONField(default=list, db_default=[], blank=True, help_text="at most two targets that come into question")
     review = models.CharField(

@@ -14,6 +14,7 @@ from results.matching.nearest import PhotoPlace, TargetPlace, place_photo
 from results.models import Placement
 from results.services.reading import read_waiting
 from telemetry.models import Capture
+from telemetry.services import forget_old_telemetry
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.commands.outbox import a_uav
@@ -105,6 +106,18 @@ def test_the_uavs_report_of_the_photo_names_its_waypoint(client: Client) -> None
     assert (medium.placement, medium.target, medium.capture) == (Placement.CAPTURED, mission.targets.get(sequence=1), capture)
     assert medium.uav == capture.uav
     assert client.get(f"/api/v1/media/{medium.pk}").json()["capture"] == capture.pk
+
+
+def test_a_report_is_forgotten_with_the_telemetry_and_the_photo_stays(client: Client, settings: Any) -> None:
+    mission = flown_mission()
+    reported(mission, 10.0005, 0.4, 2)
+    medium = upload_and_read(client, dji_photo(10.0005), mission=str(mission.pk))
+    settings.TELEMETRY_DAYS = 1
+    Capture.objects.update(received_at=AT - timedelta(days=400), taken_at=AT - timedelta(days=400))
+    forget_old_telemetry()
+    assert Capture.objects.count() == 0
+    found = client.get(f"/api/v1/media/{medium.pk}").json()
+    assert (found["placement"], found["target"]) == ("captured", mission.targets.get(sequence=1).pk)
 
 
 def test_the_uavs_report_names_the_mission_of_a_photo_that_states_none(client: Client) -> None:
