@@ -20,7 +20,7 @@ from rest_framework.views import APIView
 
 from results.models import MediaUpload
 from results.selectors.media import open_uploads_of_organisation
-from results.serializers.media import MediaUploadInputSerializer, MediaUploadSerializer, known_upload_json, upload_json
+from results.serializers.media import MAX_BYTES, MediaUploadInputSerializer, MediaUploadSerializer, known_upload_json, upload_json
 from results.services.uploads import (
     PART_BYTES,
     NoRoom,
@@ -46,10 +46,12 @@ TUS_EXTENSIONS = "creation,termination"
 TUS_HEADERS = {"Tus-Resumable": TUS_VERSION, "Cache-Control": "no-store"}
 STATED_FIELDS = {"mission", "uav", "target", "asset", "sha256"}
 NUMBERS = {"uav", "target", "asset"}
-TUS_RESUMABLE = OpenApiParameter("Tus-Resumable", str, OpenApiParameter.HEADER, description="1.0.0, of tus clients")
+BYTES = {"type": "integer", "maximum": MAX_BYTES}
+TUS_RESUMABLE = OpenApiParameter("Tus-Resumable", str, OpenApiParameter.HEADER, enum=[TUS_VERSION], description="of tus clients")
 UPLOAD_OFFSET = OpenApiParameter(
-    "Upload-Offset", int, OpenApiParameter.HEADER, required=True, description="the byte at which this part begins"
+    "Upload-Offset", BYTES | {"minimum": 0}, OpenApiParameter.HEADER, required=True, description="the byte at which this part begins"
 )
+OTHER_VERSION = {412: OpenApiResponse(description="`tus_version`: the version of tus that is asked for is not spoken.")}
 NO_ROOM = OpenApiResponse(description="`no_room`: the organisation's photos and videos leave no room for it.")
 
 
@@ -102,15 +104,19 @@ class MediaUploads(TusView):
             "Upload-Metadata with `filename` and, if known, `sha256`, `mission`, `uav`, `target`, `asset`."
         ),
         parameters=[
-            OpenApiParameter("Upload-Length", int, OpenApiParameter.HEADER, description="of tus clients: bytes of the file"),
+            OpenApiParameter(
+                "Upload-Length", BYTES | {"minimum": 1}, OpenApiParameter.HEADER, description="of tus clients: bytes of the file"
+            ),
             OpenApiParameter("Upload-Metadata", str, OpenApiParameter.HEADER, description="of tus clients: names and values in Base64"),
             TUS_RESUMABLE,
         ],
         request=MediaUploadInputSerializer,
-        responses={200: MediaUploadSerializer, 201: MediaUploadSerializer, 409: NO_ROOM},
+        responses={200: MediaUploadSerializer, 201: MediaUploadSerializer, 409: NO_ROOM, **OTHER_VERSION},
     )
     def post(self, request: SignedInRequest) -> Response:
         is_tus = "Upload-Length" in request.headers
+        if is_tus and request.META.get("CONTENT_LENGTH") not in (None, "", "0"):
+            raise ApiProblem(400, "invalid", _("Either Upload-Length or a body announces a file."))
         body = MediaUploadInputSerializer(data=_tus_body(request) if is_tus else request.data)
         body.is_valid(raise_exception=True)
         values = body.validated_data
@@ -137,7 +143,7 @@ class MediaUploadDetail(TusView):
         summary="How much of a file is here",
         description="By HEAD, too: Upload-Offset and Upload-Length.",
         parameters=[TUS_RESUMABLE],
-        responses=MediaUploadSerializer,
+        responses={200: MediaUploadSerializer, **OTHER_VERSION},
     )
     def get(self, request: SignedInRequest, media_upload_id: UUID) -> Response:
         upload = _upload(request, media_upload_id)
@@ -154,6 +160,7 @@ class MediaUploadDetail(TusView):
             409: OpenApiResponse(description="`offset`: the part does not begin where the bytes that are here end."),
             422: OpenApiResponse(description="`wrong_hash`, or `unsupported_type` by its content."),
             507: OpenApiResponse(description="`store_full`: what was received before stays."),
+            **OTHER_VERSION,
         },
     )
     def patch(self, request: SignedInRequest, media_upload_id: UUID) -> Response:
@@ -166,7 +173,9 @@ class MediaUploadDetail(TusView):
             upload = receive_part(upload=upload, offset=int(offset), content=content)
         return Response(status=204, headers=_offset(upload))
 
-    @extend_schema(operation_id="delete_media_upload", summary="Cancel an upload", parameters=[TUS_RESUMABLE], responses={204: None})
+    @extend_schema(
+        operation_id="delete_media_upload", summary="Cancel an upload", parameters=[TUS_RESUMABLE], responses={204: None, **OTHER_VERSION}
+    )
     def delete(self, request: SignedInRequest, media_upload_id: UUID) -> Response:
         delete_upload(upload=_upload(request, media_upload_id))
         return Response(status=204)

@@ -249,6 +249,7 @@ def test_a_client_of_tus_asks_what_the_server_can(client: Client) -> None:
     assert (refused.status_code, refused["Tus-Version"]) == (412, "1.0.0")
     assert client.post(UPLOADS, headers={"Upload-Length": "10", "Upload-Metadata": "filename %%%"}).status_code == 400
     assert client.post(UPLOADS, headers={"Upload-Length": "ten"}).status_code == 400
+    assert client.post(UPLOADS, {"file_name": "x"}, content_type="application/json", headers={"Upload-Length": "10"}).status_code == 400
 
 
 @pytest.mark.django_db(transaction=True)

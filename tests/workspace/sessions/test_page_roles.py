@@ -12,7 +12,10 @@ from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
 
-STAND_INS = {"uuid": "00000000-0000-4000-8000-000000000000", "int": "0", "str": "x", "path": "x", "file_kind": "csv", "result_kind": "csv"}
+STAND_INS = {
+    "uuid": "00000000-0000-4000-8000-000000000000", "int": "0", "str": "x", "path": "x", "file_kind": "csv", "result_kind": "csv",
+    "capture_kind": "csv", "finding_kind": "csv",
+}  # fmt: skip
 OPEN_TO_ALL = {
     "api/schema", "api/docs", "service-worker.js", "offline", "sign-in", "lost-password", "lost-password/sent", "new-password/x/x",
     "new-password/set", "invitation/x", "email-address/x", "sign-in/passkey", "single-sign-on",
