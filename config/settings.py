@@ -237,6 +237,7 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_THROTTLE_RATES": {
         "plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second"),
         "view-plans": os.environ.get("SPANWISE_VIEW_PLAN_RATE", "20/minute"),
+        "coverage": os.environ.get("SPANWISE_COVERAGE_RATE", "120/minute"),
         "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
         "tiles": os.environ.get("SPANWISE_TILE_RATE", "3000/minute"),
         "scene": os.environ.get("SPANWISE_SCENE_RATE", "60/minute"),

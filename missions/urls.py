@@ -14,6 +14,7 @@ from missions.views.approvals import (
 )
 from missions.views.asset_missions import AssetMissions
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
+from missions.views.coverage import MissionCoverage, MissionCoverageFile
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
@@ -43,6 +44,8 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/restore", views.MissionRestore.as_view(), name="api-mission-restore"),
     path("missions/<uuid:mission_id>/duplicate", views.MissionDuplicate.as_view(), name="api-mission-duplicate"),
     path("missions/<uuid:mission_id>/follow-up", views.MissionFollowUp.as_view(), name="api-mission-follow-up"),
+    path("missions/<uuid:mission_id>/coverage", MissionCoverage.as_view(), name="api-mission-coverage"),
+    path("missions/<uuid:mission_id>/coverage.csv", MissionCoverageFile.as_view(), name="api-mission-coverage-file"),
     path("missions/<uuid:mission_id>/presence", views.MissionPresence.as_view(), name="api-mission-presence"),
     path("missions/<uuid:mission_id>/explanation", MissionExplanation.as_view(), name="api-mission-explanation"),
     path("missions/<uuid:mission_id>/legal-windows", MissionLegalWindows.as_view(), name="api-mission-legal-windows"),

@@ -19,7 +19,9 @@ class TelemetryConfig(AppConfig):
             register_never_connected_source,
             register_source,
         )
+        from missions.hooks.taken_photos import register_achieved_photos  # noqa: PLC0415
 
+        register_achieved_photos("telemetry.selectors.captures.achieved_photos")
         register_sources("telemetry.selectors.events.SOURCES")
         register_flight_teller("telemetry.selectors.in_flight.is_in_flight")
         register_source("telemetry.selectors.in_the_air.places_in_the_air")

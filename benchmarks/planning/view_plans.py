@@ -20,8 +20,9 @@ import numpy as np
 from benchmarks.report import machine, table, write_section
 from planning.views.catalogue import catalogue
 from planning.views.coverage import coverage_of
-from planning.views.detail_views import DetailViews, detail_views, reach_m
+from planning.views.detail_views import DetailViews, detail_views
 from planning.views.limits import LIMITS, DetailRules, Limit, limits_of
+from planning.views.proof import reach_m
 from planning.views.solids import patches_of
 from planning.views.view_flight import view_flight
 from planning.views.visibility import RayCaster

@@ -95,12 +95,16 @@ def _flight(found: TowerOnMap, plan: DetailPlan, views: ViewsRequest) -> PhotoFl
         return Reason("photos_need_terrain")
 
 
-def _key(asset: int, views: ViewsRequest, version: DatasetVersion) -> str:
-    by: dict[str, Any] = {
+def kept_by(asset: int, views: ViewsRequest, version: DatasetVersion) -> dict[str, Any]:
+    """Return what a tower's photos are planned and proven by; what is kept of them is kept by it."""
+    return {
         "version": VERSION, "asset": asset, "views": views_to_json(views), "map": str(version), "terrain": str(terrain_at(version)),
         "rules": [repr(settings.CLEARANCE_RULES), settings.FLIGHT_RULES.max_agl_m],
     }  # fmt: skip
-    return "photos:" + hashlib.sha256(json.dumps(by, sort_keys=True).encode()).hexdigest()
+
+
+def _key(asset: int, views: ViewsRequest, version: DatasetVersion) -> str:
+    return "photos:" + hashlib.sha256(json.dumps(kept_by(asset, views, version), sort_keys=True).encode()).hexdigest()
 
 
 def _kept(key: str) -> PhotoFlight | Reason | None:

@@ -436,6 +436,10 @@ class MissionCopySerializer(KnownFieldsSerializer):
 
 class FollowUpSerializer(KnownFieldsSerializer):
     name = serializers.CharField(max_length=200, required=False, allow_blank=True, help_text="without one: the name with “follow-up”")
+    targets = serializers.ListField(
+        child=serializers.IntegerField(min_value=0, max_value=MAX_TARGETS), required=False, allow_empty=False, max_length=MAX_TARGETS,
+        help_text="places of the targets to fly again, complete or not; without: those that were missed",
+    )  # fmt: skip
 
 
 class MissionsInputSerializer(KnownFieldsSerializer):

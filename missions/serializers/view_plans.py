@@ -11,6 +11,7 @@ from planning.task import MM_PER_M, ViewsRequest
 from planning.views.camera import InvalidCamera, camera_from_json, camera_to_json
 from planning.views.catalogue import CatalogueCamera, catalogue
 from planning.views.limits import LIMITS
+from planning.views.proof import NotCounted
 from planning.views.solids import Component
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
@@ -162,6 +163,72 @@ class ViewCoverageSerializer(serializers.Serializer):
     reachable = serializers.FloatField()
     shown_of_reachable = serializers.FloatField()
     components = ComponentCoverageSerializer(many=True)
+
+
+class NotCountedSerializer(serializers.Serializer):
+    reason = serializers.ChoiceField(
+        choices=[own.value for own in NotCounted],
+        help_text="failed: the camera reported a failure; position, height, attitude: unknown, of heights also their reference; tilted: "
+        "more roll than 3°; far: from the tower",
+    )
+    count = serializers.IntegerField()
+
+
+class ShownSerializer(serializers.Serializer):
+    """What photos show. The camera counts as level, with the planned focal length."""
+
+    photos = serializers.IntegerField(help_text="that count")
+    not_counted = NotCountedSerializer(many=True)
+    coverage = ViewCoverageSerializer()
+
+
+class DeviationSerializer(serializers.Serializer):
+    """A planned photo that was not taken, or from elsewhere: more than 0.5 m or 1° off."""
+
+    photo = serializers.IntegerField(help_text="of the target, from 1")
+    uav = serializers.IntegerField(help_text="place in the mission")
+    waypoint = serializers.IntegerField(help_text="sequence in its route")
+    off_m = serializers.FloatField(allow_null=True, help_text="null: not taken, or where from is unknown")
+    off_deg = serializers.FloatField(allow_null=True, help_text="between the optical axes")
+
+
+class RehearsedCoverageSerializer(ShownSerializer):
+    rehearsal = serializers.UUIDField()
+    run = serializers.IntegerField(help_text="which of its conditions")
+    code = serializers.CharField(help_text="of the conditions")
+    name = serializers.CharField(allow_blank=True, help_text="of own conditions")
+    is_outdated = serializers.BooleanField(help_text="another plan was flown")
+    deviations = DeviationSerializer(many=True)
+
+
+class AchievedCoverageSerializer(ShownSerializer):
+    deviations = DeviationSerializer(many=True)
+
+
+class MissingComponentSerializer(serializers.Serializer):
+    component = serializers.ChoiceField(choices=[own.value for own in Component])
+    number = serializers.IntegerField()
+
+
+class TargetCoverageSerializer(serializers.Serializer):
+    target = serializers.IntegerField(help_text="place in the mission")
+    label = serializers.CharField()  # type: ignore[assignment]  # the field, not DRF's label
+    asset = serializers.IntegerField(allow_null=True)
+    camera = serializers.CharField()
+    gsd_mm = serializers.FloatField()
+    focal_length_mm = serializers.FloatField(allow_null=True)
+    promised = ShownSerializer(allow_null=True, help_text="by the planned photos; null where none are planned, or the tower is gone")
+    rehearsed = RehearsedCoverageSerializer(many=True, help_text="one of each run")
+    achieved = AchievedCoverageSerializer(allow_null=True, help_text="by reported photos; null while nothing was flown")
+    is_short = serializers.BooleanField(
+        allow_null=True, help_text="over 2 % of the area less was achieved than promised, or a component is missing; null without achieved"
+    )
+    missing = MissingComponentSerializer(many=True, help_text="components of which at least 10 % was promised, and nothing is achieved")
+
+
+class MissionCoverageSerializer(serializers.Serializer):
+    results = TargetCoverageSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="path and query of the next page")
 
 
 class ViewPlanZoneSerializer(serializers.Serializer):

@@ -1,6 +1,6 @@
 """Copies and follow-ups of missions."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -27,11 +27,11 @@ NOT_FLOWN: dict[str, Any] = {
 }  # fmt: skip
 
 
-def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Mission:
+def draft_follow_up(*, mission: Mission, author: User, name: str = "", targets: Collection[int] | None = None) -> Mission:
     """Create a draft of the missed targets with the same UAVs and constraints, without departure or targets that a continuation took over.
 
-    UAVs begin where they return to. Raises Refused where the mission is not over, or nothing was missed, and InvalidRequest where its
-    targets no longer exist.
+    targets: places of those to fly again, complete or not, in place of the missed ones. UAVs begin where they return to. Raises Refused
+    where the mission is not over, or nothing was missed, and InvalidRequest where its targets no longer exist.
     """
     if mission.state not in ENDED_STATES:
         raise refuse("not_over", _("A follow-up is planned once the mission is over."))
@@ -40,10 +40,11 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Missio
     missed = tuple(
         wish
         for wish, target in zip(asked.targets, mission.targets.all(), strict=True)
-        if target.state != TargetState.COMPLETE and _what(target) not in taken_over
+        if (target.sequence in targets if targets is not None else target.state != TargetState.COMPLETE) and _what(target) not in taken_over
     )
     if not missed:
-        raise refuse("nothing_missed", _("No target of this mission was missed."))
+        none = _("No target of this mission was missed.") if targets is None else _("None of these targets is left to this mission.")
+        raise refuse("nothing_missed", none)
     uavs = tuple(replace(uav, position=uav.returns_to, home=None) for uav in asked.uavs)
     return create_mission(
         organisation=mission.organisation,

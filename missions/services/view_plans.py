@@ -1,6 +1,7 @@
 """Photos of a tower, planned at a user's request, with the flight through them and the zones that it meets."""
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -15,7 +16,7 @@ from missions.selectors.tower_sites import TowerOnMap
 from planning.checks.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.task import MM_PER_M, ViewsRequest, views_to_json
-from planning.views.coverage import ComponentCoverage
+from planning.views.coverage import ComponentCoverage, Coverage
 from planning.views.detail_views import DetailPlan
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO
@@ -39,8 +40,6 @@ def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: Detai
     positions = found.frame.to_degrees(flight.position[:, :2])
     agl_m = flight.position[:, 2] - found.ground_m(flight.position[:, :2])
     photo_at = np.flatnonzero(flight.photo != NO_PHOTO)
-    coverage = plan.coverage
-    whole_m2 = float(coverage.patches.area_m2.sum())
     return {
         "asset": asset.pk,
         **views_to_json(views),
@@ -66,14 +65,19 @@ def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: Detai
         "route": [[*position, height_m] for position, height_m in zip(positions.tolist(), flight.position[:, 2].tolist(), strict=True)],
         "length_m": flight.length_m,
         "duration_s": plan.seconds,
-        "coverage": {
-            "shown": float(coverage.patches.area_m2[coverage.shown].sum()) / whole_m2,
-            "reachable": float(coverage.patches.area_m2[coverage.reachable].sum()) / whole_m2,
-            "shown_of_reachable": coverage.share,
-            "components": [_component_json(row) for row in plan.components],
-        },
+        "coverage": coverage_json(plan.coverage, plan.components),
         "zones": _zones(found, flight.position),
     }  # fmt: skip
+
+
+def coverage_json(coverage: Coverage, components: Sequence[ComponentCoverage]) -> dict[str, Any]:
+    whole_m2 = float(coverage.patches.area_m2.sum())
+    return {
+        "shown": float(coverage.patches.area_m2[coverage.shown].sum()) / whole_m2,
+        "reachable": float(coverage.patches.area_m2[coverage.reachable].sum()) / whole_m2,
+        "shown_of_reachable": coverage.share,
+        "components": [_component_json(row) for row in components],
+    }
 
 
 def _component_json(row: ComponentCoverage) -> dict[str, Any]:

@@ -70,7 +70,8 @@ class MissionFollowUp(APIView):
     @extend_schema(
         operation_id="draft_follow_up",
         summary="A draft with the targets that a mission missed",
-        description="With its UAVs and wishes, and no departure. Only of a mission that is over; what another one took over stays there.",
+        description="With its UAVs and wishes, and no departure. Only of a mission that is over; what another one took over stays there. "
+        "`targets` flies others again, such as those of which photos are missing (/missions/{id}/coverage).",
         request=inputs.FollowUpSerializer,
         responses={201: shapes.MissionSerializer, **REFUSED},
     )
@@ -80,7 +81,7 @@ class MissionFollowUp(APIView):
         serializer = inputs.FollowUpSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
         with api_problems(), refusals():
-            draft = draft_follow_up(mission=mission, author=request.user, name=serializer.validated_data.get("name", ""))
+            draft = draft_follow_up(mission=mission, author=request.user, **serializer.validated_data)
         return answer_mission(request.user, draft.pk, status=201)
 
 

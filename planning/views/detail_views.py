@@ -1,7 +1,7 @@
 """Photos of every part of an asset at an asked ground sample distance, from outside the clearance, and the flight through them."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +9,10 @@ from scipy.sparse import csr_array
 
 from planning.views.camera import Camera, Lens, standoff_m
 from planning.views.cover import fewest_photos
-from planning.views.coverage import ComponentCoverage, Coverage, by_component, coverage_of
+from planning.views.coverage import ComponentCoverage, Coverage, by_component
 from planning.views.keep_out import KeepOut
 from planning.views.limits import DetailRules, Limits, limits_of
+from planning.views.proof import REACH_M, flown_camera, proof_surface, reach_m
 from planning.views.site import TowerSite
 from planning.views.solids import Component, FloatArray, Patches, Solid, patches_of
 from planning.views.view_flight import NO_PHOTO, ViewFlight, view_flight
@@ -30,10 +31,7 @@ MAX_PHOTOS, MAX_CANDIDATES = 200, 15_000
 SEED = 33  # of the order in which positions are looked at, where there are too many for all
 MIN_REACHABLE_SHARE = 0.1  # of a surface that can be shown: below, it is looked at on smaller patches
 MIN_SHOWN_SHARE = 0.2  # of what the photo shows that shows the most: below, a photo is weighed only where it alone shows a patch
-PROOF_PATCH_M = 1.0  # sides of patches on which coverage is told
 ENTRY_ABOVE_M = 2.0  # the keep-out over the tower
-MIN_PITCH_DEG = -80.0
-REACH_M = 80.0  # from the asset's axis, of candidate positions
 LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
 MIN_LENS_SHARE = 0.99  # of what the longest focal length reaches, for a shorter one to do
 
@@ -56,11 +54,6 @@ class DetailViews:
     limits: Limits
     bound: int
     candidates: int = field(default=0)
-
-
-def reach_m(camera: Camera, asked_gsd_m: float) -> float:
-    """The distance [m] up to which places are looked at: where the longest focal length reaches the GSD, at most REACH_M."""
-    return min(standoff_m(camera, asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
 
 
 def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailRules) -> DetailViews:
@@ -123,8 +116,7 @@ def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: Det
 
     No photo looks steeper down than MIN_PITCH_DEG: UAVs are told where to look by a place, and one right under them has no bearing.
     """
-    pitch_min_deg = min(max(camera.gimbal.pitch_min_deg, MIN_PITCH_DEG), camera.gimbal.pitch_max_deg)
-    camera = replace(camera, gimbal=replace(camera.gimbal, pitch_min_deg=pitch_min_deg))
+    camera = flown_camera(camera)
     views = detail_views(site.solid, site.keep_out, camera, rules)
     entry = np.array([0.0, 0.0, site.keep_out.top_at(np.zeros(2)) + ENTRY_ABOVE_M])
     flight = view_flight(views.poses, site.keep_out, entry, entry)
@@ -132,12 +124,10 @@ def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: Det
     poses = views.poses.only(order)
     renumbered = np.full(len(flight), NO_PHOTO)
     renumbered[flight.photo != NO_PHOTO] = np.arange(len(order))
-    patches, caster = patches_of(site.solid, PROOF_PATCH_M), RayCaster([site.solid])
-    farthest_m = reach_m(camera, rules.asked_gsd_m)
-    limits = limits_of(patches, site.keep_out, caster, camera, farthest_m)
-    coverage = coverage_of(poses, views.lens, camera, patches, caster, limits.limit)
+    surface = proof_surface(site, camera, rules.asked_gsd_m)
+    coverage = surface.coverage(poses, views.lens)
     return DetailPlan(
-        poses, _distance_m(poses, caster), views.lens, ViewFlight(flight.position, renumbered), coverage,
+        poses, _distance_m(poses, surface.caster), views.lens, ViewFlight(flight.position, renumbered), coverage,
         by_component(site.solid, coverage), views.bound, _seconds(flight.position, len(poses), speeds),
     )  # fmt: skip
 

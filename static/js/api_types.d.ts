@@ -47,6 +47,14 @@ export interface components {
             /** Format: date-time */
             readonly last_login: string | null;
         };
+        /** @description What photos show. The camera counts as level, with the planned focal length. */
+        AchievedCoverage: {
+            /** @description that count */
+            photos: number;
+            not_counted: components["schemas"]["NotCounted"][];
+            coverage: components["schemas"]["ViewCoverage"];
+            deviations: components["schemas"]["Deviation"][];
+        };
         /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         AcknowledgementInputRequest: {
             /** @default  */
@@ -1622,6 +1630,25 @@ export interface components {
             /** @description deleted */
             uavs: number;
         };
+        /** @description A planned photo that was not taken, or from elsewhere: more than 0.5 m or 1° off. */
+        Deviation: {
+            /** @description of the target, from 1 */
+            photo: number;
+            /** @description place in the mission */
+            uav: number;
+            /** @description sequence in its route */
+            waypoint: number;
+            /**
+             * Format: double
+             * @description null: not taken, or where from is unknown
+             */
+            off_m: number | null;
+            /**
+             * Format: double
+             * @description between the optical axes
+             */
+            off_deg: number | null;
+        };
         DismissRequest: {
             /** @default  */
             note: string;
@@ -2305,6 +2332,8 @@ export interface components {
         FollowUpRequest: {
             /** @description without one: the name with “follow-up” */
             name?: string;
+            /** @description places of the targets to fly again, complete or not; without: those that were missed */
+            targets?: number[];
         };
         /**
          * @description * `lattice` - lattice
@@ -3725,6 +3754,10 @@ export interface components {
             /** @description whether the other one returns, too */
             is_returning: boolean;
         };
+        MissingComponent: {
+            component: components["schemas"]["ComponentEnum"];
+            number: number;
+        };
         /**
          * @description * `type` - type
          *     * `range` - range
@@ -3819,6 +3852,11 @@ export interface components {
         MissionCopyRequest: {
             /** @description without one: the name with (copy) */
             name?: string;
+        };
+        MissionCoverage: {
+            results: components["schemas"]["TargetCoverage"][];
+            /** @description path and query of the next page */
+            next: string | null;
         };
         MissionEvent: {
             /** @description the same whenever it is read */
@@ -4311,6 +4349,30 @@ export interface components {
          * @enum {string}
          */
         NextActEnum: "connect" | "upload" | "wait" | "start";
+        NotCounted: {
+            /**
+             * @description failed: the camera reported a failure; position, height, attitude: unknown, of heights also their reference; tilted: more roll than 3°; far: from the tower
+             *
+             *     * `failed` - failed
+             *     * `position` - position
+             *     * `height` - height
+             *     * `attitude` - attitude
+             *     * `tilted` - tilted
+             *     * `far` - far
+             */
+            reason: components["schemas"]["NotCountedReasonEnum"];
+            count: number;
+        };
+        /**
+         * @description * `failed` - failed
+         *     * `position` - position
+         *     * `height` - height
+         *     * `attitude` - attitude
+         *     * `tilted` - tilted
+         *     * `far` - far
+         * @enum {string}
+         */
+        NotCountedReasonEnum: "failed" | "position" | "height" | "attitude" | "tilted" | "far";
         Noted: {
             /** Format: uuid */
             command: string;
@@ -6127,6 +6189,24 @@ export interface components {
             has_own_battery: boolean;
             words: string;
         };
+        /** @description What photos show. The camera counts as level, with the planned focal length. */
+        RehearsedCoverage: {
+            /** @description that count */
+            photos: number;
+            not_counted: components["schemas"]["NotCounted"][];
+            coverage: components["schemas"]["ViewCoverage"];
+            /** Format: uuid */
+            rehearsal: string;
+            /** @description which of its conditions */
+            run: number;
+            /** @description of the conditions */
+            code: string;
+            /** @description of own conditions */
+            name: string;
+            /** @description another plan was flown */
+            is_outdated: boolean;
+            deviations: components["schemas"]["Deviation"][];
+        };
         RehearsedRoute: {
             /** @description place in the mission */
             uav: number;
@@ -7074,6 +7154,13 @@ export interface components {
             height?: number;
             points?: number[][];
         };
+        /** @description What photos show. The camera counts as level, with the planned focal length. */
+        Shown: {
+            /** @description that count */
+            photos: number;
+            not_counted: components["schemas"]["NotCounted"][];
+            coverage: components["schemas"]["ViewCoverage"];
+        };
         /** @description A login attempt or a logout. `username` is null where the typed name is unknown. */
         SignIn: {
             readonly id: number;
@@ -7522,6 +7609,27 @@ export interface components {
          * @enum {string}
          */
         TakenAtSource: "gps" | "camera" | "local" | "user";
+        TargetCoverage: {
+            /** @description place in the mission */
+            target: number;
+            label: string;
+            asset: number | null;
+            camera: string;
+            /** Format: double */
+            gsd_mm: number;
+            /** Format: double */
+            focal_length_mm: number | null;
+            /** @description by the planned photos; null where none are planned, or the tower is gone */
+            promised: components["schemas"]["Shown"] | null;
+            /** @description one of each run */
+            rehearsed: components["schemas"]["RehearsedCoverage"][];
+            /** @description by reported photos; null while nothing was flown */
+            achieved: components["schemas"]["AchievedCoverage"] | null;
+            /** @description over 2 % of the area less was achieved than promised, or a component is missing; null without achieved */
+            is_short: boolean | null;
+            /** @description components of which at least 10 % was promised, and nothing is achieved */
+            missing: components["schemas"]["MissingComponent"][];
+        };
         TargetExplanation: {
             target: number;
             reason: components["schemas"]["TargetExplanationReasonEnum"];
@@ -9240,6 +9348,7 @@ export interface components {
 }
 export type AboveEnum = components['schemas']['AboveEnum'];
 export type Account = components['schemas']['Account'];
+export type AchievedCoverage = components['schemas']['AchievedCoverage'];
 export type AcknowledgementInputRequest = components['schemas']['AcknowledgementInputRequest'];
 export type AcknowledgementRequest = components['schemas']['AcknowledgementRequest'];
 export type AcknowledgementStateEnum = components['schemas']['AcknowledgementStateEnum'];
@@ -9356,6 +9465,7 @@ export type DaylightEvent = components['schemas']['DaylightEvent'];
 export type DeckSourceEnum = components['schemas']['DeckSourceEnum'];
 export type DemoData = components['schemas']['DemoData'];
 export type DemoRemoved = components['schemas']['DemoRemoved'];
+export type Deviation = components['schemas']['Deviation'];
 export type DismissRequest = components['schemas']['DismissRequest'];
 export type DispatchInputRequest = components['schemas']['DispatchInputRequest'];
 export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];
@@ -9513,11 +9623,13 @@ export type MediumPage = components['schemas']['MediumPage'];
 export type MediumState = components['schemas']['MediumState'];
 export type MetLeg = components['schemas']['MetLeg'];
 export type MetOnReturn = components['schemas']['MetOnReturn'];
+export type MissingComponent = components['schemas']['MissingComponent'];
 export type MissingEnum = components['schemas']['MissingEnum'];
 export type Mission = components['schemas']['Mission'];
 export type MissionApproval = components['schemas']['MissionApproval'];
 export type MissionAuthor = components['schemas']['MissionAuthor'];
 export type MissionCopyRequest = components['schemas']['MissionCopyRequest'];
+export type MissionCoverage = components['schemas']['MissionCoverage'];
 export type MissionEvent = components['schemas']['MissionEvent'];
 export type MissionEventKindEnum = components['schemas']['MissionEventKindEnum'];
 export type MissionEventLevelEnum = components['schemas']['MissionEventLevelEnum'];
@@ -9548,6 +9660,8 @@ export type NewCredential = components['schemas']['NewCredential'];
 export type NewInvitation = components['schemas']['NewInvitation'];
 export type NewToken = components['schemas']['NewToken'];
 export type NextActEnum = components['schemas']['NextActEnum'];
+export type NotCounted = components['schemas']['NotCounted'];
+export type NotCountedReasonEnum = components['schemas']['NotCountedReasonEnum'];
 export type Noted = components['schemas']['Noted'];
 export type NotedList = components['schemas']['NotedList'];
 export type NullEnum = components['schemas']['NullEnum'];
@@ -9674,6 +9788,7 @@ export type RehearsalRun = components['schemas']['RehearsalRun'];
 export type RehearsalRunWithAssessment = components['schemas']['RehearsalRunWithAssessment'];
 export type RehearsalTrack = components['schemas']['RehearsalTrack'];
 export type RehearsalUav = components['schemas']['RehearsalUav'];
+export type RehearsedCoverage = components['schemas']['RehearsedCoverage'];
 export type RehearsedRoute = components['schemas']['RehearsedRoute'];
 export type RehearsedTarget = components['schemas']['RehearsedTarget'];
 export type RepairRequest = components['schemas']['RepairRequest'];
@@ -9737,6 +9852,7 @@ export type SessionTimes = components['schemas']['SessionTimes'];
 export type SeveritySource = components['schemas']['SeveritySource'];
 export type Shape = components['schemas']['Shape'];
 export type ShapeRequest = components['schemas']['ShapeRequest'];
+export type Shown = components['schemas']['Shown'];
 export type SignIn = components['schemas']['SignIn'];
 export type SignInOutcome = components['schemas']['SignInOutcome'];
 export type SignInPage = components['schemas']['SignInPage'];
@@ -9769,6 +9885,7 @@ export type SupportKindEnum = components['schemas']['SupportKindEnum'];
 export type SupportsOutput = components['schemas']['SupportsOutput'];
 export type TakeOff = components['schemas']['TakeOff'];
 export type TakenAtSource = components['schemas']['TakenAtSource'];
+export type TargetCoverage = components['schemas']['TargetCoverage'];
 export type TargetExplanation = components['schemas']['TargetExplanation'];
 export type TargetExplanationReasonEnum = components['schemas']['TargetExplanationReasonEnum'];
 export type TargetInputRequest = components['schemas']['TargetInputRequest'];

@@ -4,7 +4,11 @@ from collections.abc import Iterable, Iterator
 
 from django.db.models import Count, QuerySet
 
+from mavlink.decoding.captures import AttitudeSource
+from mavlink.decoding.gimbal_attitude import YawFrame
+from missions.hooks.taken_photos import PhotoOfMission
 from missions.models import Mission
+from planning.views.proof import TakenPhoto
 from telemetry.exports.captures import STORED, CaptureRow
 from telemetry.models import Capture
 
@@ -41,3 +45,21 @@ def photos_by_uav(mission: Mission) -> dict[int, int]:
     """Return the numbers of photos taken in a mission."""
     taken = Capture.objects.filter(mission=mission, is_taken=True).order_by()
     return dict(taken.values_list("uav_id").annotate(Count("pk")))
+
+
+def achieved_photos(mission: Mission) -> list[PhotoOfMission] | None:
+    """Return the photos that UAVs of a mission reported, for what they prove; None while nothing was flown or reported.
+
+    Where only the vehicle's attitude is known, or a yaw from its nose, the camera's is unknown.
+    """
+    places = {row.uav_id: row.sequence for row in mission.mission_uavs.all()}
+    found = [_photo(one, places.get(one.uav_id)) for one in Capture.objects.filter(mission=mission).order_by(*ORDER).iterator()]
+    return found if found or mission.started_at is not None else None
+
+
+def _photo(one: Capture, uav: int | None) -> PhotoOfMission:
+    is_aimed = one.attitude_source in {AttitudeSource.CAMERA, AttitudeSource.GIMBAL} and one.yaw_frame == YawFrame.EARTH
+    lon, lat = (None, None) if one.position is None else one.position.coords
+    yaw_deg, pitch_deg, roll_deg = (one.yaw_deg, one.pitch_deg, one.roll_deg) if is_aimed else (None, None, None)
+    photo = TakenPhoto(lon, lat, one.altitude_amsl_m, yaw_deg, pitch_deg, roll_deg, one.is_taken)
+    return PhotoOfMission(photo, uav, one.waypoint_sequence, one.altitude_relative_m, one.flight or 1)
