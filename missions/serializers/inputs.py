@@ -444,9 +444,3 @@ class FollowUpSerializer(KnownFieldsSerializer):
 
 class MissionsInputSerializer(KnownFieldsSerializer):
     missions = serializers.ListField(child=serializers.UUIDField(), allow_empty=False, max_length=200)
-
-
-class PresenceInputSerializer(KnownFieldsSerializer):
-    editor = serializers.RegexField(r"^[A-Za-z0-9.-]{1,64}$", help_text="a name that the page made up for itself")
-    here = serializers.BooleanField(required=False, default=True, help_text="false: the page is being left")
-    planning = serializers.BooleanField(required=False, default=False, help_text="the page has a plan of the mission made at present")

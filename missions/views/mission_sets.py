@@ -5,7 +5,6 @@ from uuid import UUID
 
 from django.http import Http404
 from drf_spectacular.utils import extend_schema
-from rest_framework import serializers
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -18,10 +17,12 @@ from missions.selectors.mission_list import choices_of_filters
 from missions.selectors.uav_changes import uav_change_json, uav_changes
 from missions.serializers import inputs, shapes
 from missions.serializers.changes import UavChangeSerializer
+from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.services.mission_copies import draft_follow_up
 from missions.views.approvals import REFUSED
 from missions.views.missions import answer_mission, mission_or_404
 from missions.views.problems import api_problems, refusals
+from workspace.api import strict_serializers as serializers
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.signed_in import SignedInRequest
@@ -38,6 +39,12 @@ class PresenceSerializer(serializers.Serializer):
     others = PresentSerializer(many=True)
     ground_revision = serializers.IntegerField(help_text="of assets, zones and terrain: a plan of an older one is stale")
     uav_changes = UavChangeSerializer(many=True)
+
+
+class PresenceInputSerializer(KnownFieldsSerializer):
+    editor = serializers.RegexField(r"^[A-Za-z0-9.-]{1,64}$", help_text="a name that the page made up for itself")
+    here = serializers.BooleanField(required=False, default=True, help_text="false: the page is being left")
+    planning = serializers.BooleanField(required=False, default=False, help_text="the page has a plan of the mission made at present")
 
 
 class MissionFilterChoices(APIView):
@@ -132,14 +139,14 @@ class MissionPresence(APIView):
     @extend_schema(
         operation_id="report_presence",
         summary="Say that a page has the mission open, and hear who else has",
-        request=inputs.PresenceInputSerializer,
+        request=PresenceInputSerializer,
         responses=PresenceSerializer,
     )
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         user = request.user
         if missions.revision_of_mission(user.organisation_id, mission_id) is None:
             raise Http404
-        serializer = inputs.PresenceInputSerializer(data=request.data)
+        serializer = PresenceInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
         reported = serializer.validated_data
         others = report_presence(

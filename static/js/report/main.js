@@ -15,6 +15,7 @@ import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "../record/track.js
 import { mountSceneOpener } from "../scene/opener.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
+import { mountCoverage } from "./coverage.js";
 import { createDock } from "./dock.js";
 import { offerClosing, offerDownloads, offerFollowUp } from "./follow_up.js";
 import { mountLayout } from "./layout.js";
@@ -43,6 +44,7 @@ const page = readPage();
 const layout = mountLayout();
 const map = createReportMap(page, { onPick: choose, onIncident: showIncident });
 const dock = createDock({ onChoose: choose });
+const coverage = mountCoverage({ canPlan: page.canFly });
 const player = createPlayer({ onMove: show });
 const scene = mountSceneOpener(
   () =>
@@ -137,6 +139,7 @@ function take(answer) {
   offerFollowUp(record, { canPlan: page.canFly });
   offerClosing(record, { canFly: page.canFly });
   offerDownloads(record);
+  void coverage.renew(record);
   drawIncidents(record.incidents, showIncident);
   drawQuality(record);
   drawLegs(record, labels, lookAtLeg);

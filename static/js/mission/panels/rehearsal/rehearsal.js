@@ -7,6 +7,7 @@ import { whyNotRehearsed } from "../../flying/next_act.js";
 import { isRunning, levelWords } from "../../rehearsal/rehearsal.js";
 import { createAssessment } from "./assessment.js";
 import { mountForm } from "./form.js";
+import { mountRehearsedPhotos } from "./photos.js";
 
 /** @import { Rehearsal, RehearsalDetail } from "../../../api_types.d.ts" */
 /** @import { Binding } from "../../../page/keyboard.js" */
@@ -34,6 +35,7 @@ export function mountRehearsal(store, rehearsing, how) {
   const section = byId("rehearsal");
   const earlier = byId("rehearsal-list", HTMLSelectElement);
   const assessment = createAssessment(store, rehearsing, how);
+  mountRehearsedPhotos(store);
   const form = canRehearse ? mountForm({ onStart: start, onChange: () => draw(store.state) }) : null;
   if (form) place("cancel").addEventListener("click", () => void rehearsing.cancel());
   const choice = form ? byId("rehearsal-choice", HTMLDetailsElement) : null;
