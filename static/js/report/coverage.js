@@ -92,7 +92,10 @@ function targetPart(target, turned) {
     { class: "coverage-target", open: Boolean(isShort) !== turned.has(number) },
     h(
       "summary",
-      { onclick: () => (turned.has(number) ? turned.delete(number) : turned.add(number)) },
+      {
+        class: achieved ? (isShort ? "short" : "whole") : "",
+        onclick: () => (turned.has(number) ? turned.delete(number) : turned.add(number)),
+      },
       icon(achieved ? (isShort ? "triangle-alert" : "circle-check") : "circle-dashed", "small"),
       h("strong", {}, `${number + 1} ${label}`),
       h("span", { class: "caption" }, words),

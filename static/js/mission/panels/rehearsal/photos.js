@@ -75,7 +75,7 @@ function targetPart({ target, label }, promised, rehearsed) {
     { class: "coverage-target", open: isShort },
     h(
       "summary",
-      {},
+      { class: isShort ? "short" : "whole" },
       icon(isShort ? "triangle-alert" : "circle-check", "small"),
       h("strong", {}, `${target + 1} ${label}`),
       h("span", { class: "caption" }, words),
