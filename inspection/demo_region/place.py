@@ -47,6 +47,7 @@ class BasedUav:
     max_airspeed_mps: float = 19.0
     rotor_disk_m2: float = 0.5188
     hover_power_w: float = 430.0  # 263.2 Wh last 36 minutes and a half
+    cameras: tuple[str, ...] = ()  # keys of the camera catalogue
 
     @property
     def type_name(self) -> str:
@@ -65,8 +66,8 @@ BASES = (
         "Elmsgard depot",
         lon_lat(-9_050.0, 2_450.0),
         (
-            BasedUav("Kestrel 1", ("RGB camera", "Thermal camera"), 24_000.0, 12.0, 263.2),
-            BasedUav("Kestrel 2", ("RGB camera", "Thermal camera"), 24_000.0, 12.0, 263.2),
+            BasedUav("Kestrel 1", ("RGB camera", "Thermal camera"), 24_000.0, 12.0, 263.2, cameras=("sony-a7r-iv-55",)),
+            BasedUav("Kestrel 2", ("RGB camera", "Thermal camera"), 24_000.0, 12.0, 263.2, cameras=("sony-a7r-iv-55",)),
         ),
     ),
     DemoBase(

@@ -126,9 +126,11 @@ def _timing(
     count, agl_m, own = len(flown.position), flown.agl_m, air.own
     arrival_s, used_j = np.empty(count), np.empty(count)
     leg_m, leg_s, leg_j, density = _legs(flown, air, lands)
-    turning, brake_s = np.zeros(len(leg_s)), np.full(len(leg_s) + 1, own.brake_s)  # as fast as each leg, the last for none behind
+    # A slower leg is braked and settled from in less time; the last is for none behind.
+    turning, brake_s, settle_s = np.zeros(len(leg_s)), np.full(len(leg_s) + 1, own.brake_s), np.full(len(leg_s) + 1, own.settle_s)
     for place in range(len(flown.wanted_mps)):
-        brake_s[place] = own.brake_s * min(flown.wanted_mps[place] / own.cruise_mps, 1.0)
+        slower = min(flown.wanted_mps[place] / own.cruise_mps, 1.0)
+        brake_s[place], settle_s[place] = own.brake_s * slower, own.settle_s * slower
     if count > 1 and np.isfinite(leg_s).all():
         is_stop = hold_s > 0.0
         is_stop[0], is_stop[-1] = True, is_stop[-1] or lands
@@ -148,7 +150,7 @@ def _timing(
         if place < count:
             arrival_s[place], used_j[place] = now_s, now_j
             if hold_s[place] > 0.0:
-                stays_s = own.settle_s + hold_s[place] + brake_s[place + 1]
+                stays_s = settle_s[place] + hold_s[place] + brake_s[place + 1]
                 seconds, joules = hold_taken(stays_s, agl_m[place], density[place], air)
                 now_s, now_j = now_s + seconds, now_j + joules
         else:

@@ -11,6 +11,8 @@ from missions.services.commands.refused import Refused
 from missions.services.fleet.rows import FleetRowInUse
 from missions.services.fleet.types_and_bases import delete_base, delete_uav_type
 from missions.services.fleet.uavs import delete_uav
+from planning.views.camera import camera_to_json
+from planning.views.catalogue import catalogue
 from workspace.models import Organisation, User
 
 TYPE_FIGURES = ("max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
@@ -27,8 +29,9 @@ def _base(planned: DemoBase, organisation: Organisation) -> Base:
 
 
 def _create_uav(uav: BasedUav, base: Base, organisation: Organisation) -> bool:
-    """Create a UAV. Its type, named like it without the number, supplies range, speed, sensors and performance."""
-    facts = {name: getattr(uav, name) for name in TYPE_FIGURES} | {"sensors": list(uav.sensors)}
+    """Create a UAV. Its type, named like it without the number, supplies range, speed, sensors, cameras and performance."""
+    cameras = [camera_to_json(catalogue()[key].camera) for key in uav.cameras]
+    facts = {name: getattr(uav, name) for name in TYPE_FIGURES} | {"sensors": list(uav.sensors), "cameras": cameras}
     uav_type, _ = UavType.objects.get_or_create(organisation=organisation, name=uav.type_name, defaults=facts)
     _, is_new = Uav.objects.get_or_create(
         organisation=organisation,
