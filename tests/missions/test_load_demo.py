@@ -8,6 +8,7 @@ from django.contrib.gis.geos import Point
 from django.core.management import CommandError, call_command
 
 from missions.models import Base, Uav, UavType
+from planning.views.catalogue import catalogue
 from workspace.models import Role, User
 
 pytestmark = pytest.mark.django_db
@@ -38,7 +39,8 @@ def test_each_uav_has_a_complete_type_and_a_base() -> None:
     load_demo()
     assert (UavType.objects.count(), Base.objects.count()) == (2, 2)
     kestrel = Uav.objects.get(name="Kestrel 1")
-    assert (kestrel.range_m, kestrel.speed_mps, kestrel.sensors) == (24_000.0, 12.0, ["RGB camera", "Thermal camera"])
+    camera = catalogue()["sony-a7r-iv-55"].camera.name
+    assert (kestrel.range_m, kestrel.speed_mps, kestrel.sensors) == (24_000.0, 12.0, ["RGB camera", "Thermal camera", camera])
     assert all(None not in (row.battery_wh, row.mass_kg, row.max_airspeed_mps, row.hover_power_w) for row in UavType.objects.all())
     assert kestrel.is_simulated and kestrel.is_demo
     assert kestrel.base is not None
