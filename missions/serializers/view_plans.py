@@ -188,8 +188,11 @@ class DeviationSerializer(serializers.Serializer):
     photo = serializers.IntegerField(help_text="of the target, from 1")
     uav = serializers.IntegerField(help_text="place in the mission")
     waypoint = serializers.IntegerField(help_text="sequence in its route")
-    off_m = serializers.FloatField(allow_null=True, help_text="null: not taken, or where from is unknown")
+    off_m = serializers.FloatField(allow_null=True, help_text="null: not taken, or not counted")
     off_deg = serializers.FloatField(allow_null=True, help_text="between the optical axes")
+    not_counted = serializers.ChoiceField(
+        choices=[own.value for own in NotCounted], allow_null=True, help_text="why one that was taken is not counted"
+    )
 
 
 class RehearsedCoverageSerializer(ShownSerializer):

@@ -223,15 +223,23 @@ def _tower(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ProofSurface]
 
 
 def _deviations(planned: Sequence[PlannedPhoto], taken: Sequence[PhotoOfMission]) -> list[Json]:
-    """Return the planned photos that were not taken, or not where or whither they were planned; numbers from 1, as they are planned."""
-    counted = [own for own in taken if why_not_counted(own.photo) is None]
+    """Return the planned photos that were not taken, or not where or whither they were planned; numbers from 1, as they are planned.
+
+    not_counted: why one that was taken counts for nothing.
+    """
+    why = [(own, why_not_counted(own.photo)) for own in taken]
+    counted = [own for own, reason in why if reason is None]
     found = []
     for number, one in enumerate(planned, start=1):
         own = [_off(one.photo, other.photo) for other in counted if (other.uav, other.waypoint) == (one.uav, one.waypoint)]
         own = own or [off for other in counted if other.waypoint is None and (off := _off(one.photo, other.photo))[0] <= SAME_PLACE_M]
         off_m, off_deg = min(own, default=(None, None), key=lambda off: (off[0] / MAX_OFF_M) + off[1] / MAX_OFF_DEG)
         if off_m is None or off_deg is None or off_m > MAX_OFF_M or off_deg > MAX_OFF_DEG:
-            found.append({"photo": number, "uav": one.uav, "waypoint": one.waypoint, "off_m": off_m, "off_deg": off_deg})
+            reasons = [] if own else [reason for other, reason in why if (other.uav, other.waypoint) == (one.uav, one.waypoint)]
+            reason = str(reasons[0]) if reasons else None
+            found.append(
+                {"photo": number, "uav": one.uav, "waypoint": one.waypoint, "off_m": off_m, "off_deg": off_deg, "not_counted": reason}
+            )
     return found
 
 

@@ -103,4 +103,8 @@ def _rows(targets: Iterable[dict[str, Any]]) -> Iterator[Iterator[Value]]:
             counts = [shown["photos"], sum(own["count"] for own in shown["not_counted"])]
             for row in shown["coverage"]["components"]:
                 names = ("component", "number", "area_m2", "shown", "reachable", "gsd_mm", "angle_deg", "limit")
-                yield map(cell, [*head, proof, conditions, *counts, *(row[name] for name in names)])
+                yield map(cell, [*head, proof, conditions, *counts, *(_rounded(row[name]) for name in names)])
+
+
+def _rounded(value: Value) -> Value:
+    return round(value, 4) if isinstance(value, float) else value

@@ -1640,7 +1640,7 @@ export interface components {
             waypoint: number;
             /**
              * Format: double
-             * @description null: not taken, or where from is unknown
+             * @description null: not taken, or not counted
              */
             off_m: number | null;
             /**
@@ -1648,6 +1648,17 @@ export interface components {
              * @description between the optical axes
              */
             off_deg: number | null;
+            /**
+             * @description why one that was taken is not counted
+             *
+             *     * `failed` - failed
+             *     * `position` - position
+             *     * `height` - height
+             *     * `attitude` - attitude
+             *     * `tilted` - tilted
+             *     * `far` - far
+             */
+            not_counted: (components["schemas"]["NotCountedReason"] | components["schemas"]["NullEnum"]) | null;
         };
         DismissRequest: {
             /** @default  */
@@ -4360,7 +4371,7 @@ export interface components {
              *     * `tilted` - tilted
              *     * `far` - far
              */
-            reason: components["schemas"]["NotCountedReasonEnum"];
+            reason: components["schemas"]["NotCountedReason"];
             count: number;
         };
         /**
@@ -4372,7 +4383,7 @@ export interface components {
          *     * `far` - far
          * @enum {string}
          */
-        NotCountedReasonEnum: "failed" | "position" | "height" | "attitude" | "tilted" | "far";
+        NotCountedReason: "failed" | "position" | "height" | "attitude" | "tilted" | "far";
         Noted: {
             /** Format: uuid */
             command: string;
@@ -9661,7 +9672,7 @@ export type NewInvitation = components['schemas']['NewInvitation'];
 export type NewToken = components['schemas']['NewToken'];
 export type NextActEnum = components['schemas']['NextActEnum'];
 export type NotCounted = components['schemas']['NotCounted'];
-export type NotCountedReasonEnum = components['schemas']['NotCountedReasonEnum'];
+export type NotCountedReason = components['schemas']['NotCountedReason'];
 export type Noted = components['schemas']['Noted'];
 export type NotedList = components['schemas']['NotedList'];
 export type NullEnum = components['schemas']['NullEnum'];

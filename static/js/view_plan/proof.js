@@ -158,15 +158,25 @@ export function proofFaults({ deviations = [], not_counted: notCounted }, notTak
 const worstFirst = (a, b) => (b.off_deg ?? Infinity) - (a.off_deg ?? Infinity) || a.photo - b.photo;
 
 /** @param {Deviation} one @param {string} notTaken */
-const deviationText = ({ photo, off_m, off_deg }, notTaken) =>
+const deviationText = ({ photo, off_m, off_deg, not_counted: reason }, notTaken) =>
   off_m === null || off_deg === null
-    ? t("Photo {number}: {fault}.", { number: photo, fault: notTaken })
+    ? t("Photo {number}: {fault}.", { number: photo, fault: reason ? NOT_COUNTED[reason] : notTaken })
     : t("Photo {number}: {away} and {angle} off.", {
         number: photo,
         away: exactHeightText(off_m),
         angle: `${numberText(off_deg, off_deg < 10 ? 1 : 0)}${DEGREE}`,
       });
 
-/** The components of which nothing is achieved, each kind once. @param {TargetCoverage} target */
-export const missingText = ({ missing }) =>
-  [...new Set(missing.map(({ component }) => COMPONENTS[component] ?? component))].join(", ");
+/** "Foundations (2 of 4), Number plate": components of which nothing is achieved. @param {TargetCoverage} target */
+export function missingText({ missing, promised }) {
+  const kinds = new Set(missing.map(({ component }) => component));
+  return [...kinds]
+    .map((kind) => {
+      const [few, all] = [missing, promised?.coverage.components ?? []].map(
+        (rows) => rows.filter(({ component }) => component === kind).length,
+      );
+      const component = COMPONENTS[kind] ?? kind;
+      return few < all ? t("{component} ({count} of {all})", { component, count: few, all }) : component;
+    })
+    .join(", ");
+}

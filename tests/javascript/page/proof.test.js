@@ -47,5 +47,6 @@ test("missing components are named by kind, each once", () => {
     { component: "clamp", number: 2 },
     { component: "plate", number: 0 },
   ];
-  assert.equal(missingText({ missing }), "Clamps, Number plate");
+  const components = [row("clamp", 1, 1, 1), row("clamp", 1, 1, 1), row("clamp", 1, 1, 1), row("plate", 1, 1, 1)];
+  assert.equal(missingText({ missing, promised: proof(1, components) }), "Clamps (2 of 3), Number plate");
 });
