@@ -2,6 +2,7 @@
 
 import { boxAround } from "../domain/geodesy.js";
 import { answerClicks } from "../map/layers/clicks.js";
+import { coneLayer, conesOf } from "../map/layers/photos.js";
 import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
@@ -18,14 +19,6 @@ const SETTLED_MS = 350;
 function layers() {
   const round = { "line-cap": "round", "line-join": "round" };
   const [casing, ink] = [readToken("--map-casing"), readToken("--accent")];
-  const cone = {
-    "icon-image": ["case", ["get", "isChosen"], "photo-chosen", "photo"],
-    "icon-size": ["case", ["get", "isChosen"], 1.5, 1],
-    "icon-rotate": ["get", "yaw_deg"],
-    "icon-rotation-alignment": "map",
-    "icon-allow-overlap": true,
-    "symbol-sort-key": ["case", ["get", "isChosen"], 1, 0],
-  };
   const found = [
     {
       id: "view-plan-casing",
@@ -41,7 +34,7 @@ function layers() {
       layout: round,
       paint: { "line-color": ink, "line-width": 1.6 },
     },
-    { id: PHOTOS, type: "symbol", source: PHOTOS, layout: cone },
+    coneLayer(PHOTOS),
   ];
   return /** @type {LayerSpecification[]} */ (found);
 }
@@ -54,14 +47,6 @@ const routeOf = ({ route }) => [
     geometry: { type: "LineString", coordinates: route.map((place) => place.slice(0, 2)) },
   },
 ];
-
-/** @param {ViewPlan} plan @param {number | null} chosen */
-const photosOf = ({ photos }, chosen) =>
-  photos.map(({ position, yaw_deg }, number) => ({
-    type: "Feature",
-    properties: { number, yaw_deg, isChosen: number === chosen },
-    geometry: { type: "Point", coordinates: position },
-  }));
 
 /** @param {MapLibreMap} map @param {(number: number) => void} clicked a photo's cone is, the first has number 0 */
 export function createViewPlanLayer(map, clicked) {
@@ -89,12 +74,12 @@ export function createViewPlanLayer(map, clicked) {
         add();
       }
       setFeatures(map, ROUTE, plan?.photos.length ? routeOf(plan) : []);
-      setFeatures(map, PHOTOS, plan ? photosOf(plan, null) : []);
+      setFeatures(map, PHOTOS, plan ? conesOf(plan.photos) : []);
       if (isNew && plan?.photos.length) fit(plan);
     },
     /** Highlights a photo, or none. @param {ViewPlan} plan @param {number | null} number */
     choose(plan, number) {
-      setFeatures(map, PHOTOS, photosOf(plan, number));
+      setFeatures(map, PHOTOS, conesOf(plan.photos, number));
     },
     recolour() {
       if (map.getSource(ROUTE)) for (const layer of layers()) setPaint(map, layer);

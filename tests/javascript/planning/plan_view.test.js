@@ -8,6 +8,7 @@ import {
   inPlanOrder,
   isPlanCurrent,
   isUnsaved,
+  photosOf,
   placesOf,
   pointAlong,
   sentenceOf,
@@ -179,4 +180,14 @@ test("the pointer's place is on the stored route, and on the changed one where i
   near(pointAlong({ ...now, hand, along: { sequence: 0, at_m: 1000, isWished: false } }), [10.01, 50]);
   assert.equal(pointAlong({ ...now, along: { sequence: 0, at_m: 500, isWished: true } }), null); // it is not changed any more
   assert.equal(pointAlong({ ...now, along: null }), null);
+});
+
+test("photos of every part are where their waypoints have a view", () => {
+  const view = { yaw_deg: 120, pitch_deg: -10, distance_m: 20, focal_length_mm: 55, clearance_m: 9, heading_deg: null };
+  const waypoints = [
+    { position: [1, 2], task: null },
+    { position: [3, 4], task: { kind: "photo", hold_s: 3, view } },
+    { position: [5, 6], task: { kind: "photo", hold_s: 10 } },
+  ];
+  assert.deepEqual(photosOf([{ waypoints }, { waypoints: [] }]), [{ position: [3, 4], yaw_deg: 120 }]);
 });

@@ -4,6 +4,7 @@ import { byId, h } from "../../dom.js";
 import { boxAround } from "../../domain/geodesy.js";
 import { isAround } from "../../domain/regions.js";
 import { mountControls } from "../../map/controls.js";
+import { showPlanPhotos } from "../../map/layers/photos.js";
 import * as rehearsedLayer from "../../map/layers/rehearsed.js";
 import * as routesLayer from "../../map/layers/routes.js";
 import { createTargets } from "../../map/layers/targets.js";
@@ -19,7 +20,7 @@ import { mountHandMap } from "../hand/hand_map.js";
 import { usesRallyPoints } from "../options/lost_link.js";
 import { mountCaught } from "../panels/caught.js";
 import { askForZone as askForFacts } from "../panels/temporary_zone.js";
-import { isPlanCurrent, routesOf, shownPlaces } from "../plan/plan_view.js";
+import { isPlanCurrent, photosOf, routesOf, shownPlaces } from "../plan/plan_view.js";
 import { staysOf } from "../plan/route_times.js";
 import { nameOf, placeTarget } from "../selection.js";
 import { isWhole } from "../tasks.js";
@@ -255,6 +256,7 @@ function createLayers(view, frame, store, actions, page) {
           staysOf(route).map(({ kind, index }) => ({ kind, position: route.waypoints[index].position })),
         );
         routesLayer.showStops(map, stops);
+        showPlanPhotos(map, photosOf(routes));
       });
       showSearch(view, store, () => lookAt(store.state));
       store.listen(["lookedAt", "chosenRoute", "plan", "selection"], lookAt);

@@ -8,7 +8,7 @@ import { changesOf } from "../hand/hand_route.js";
 import { basisOf, storedBasisOf, withoutWishes } from "../selection.js";
 import { ordersOf, wishedOrders } from "../targets/locks.js";
 
-/** @import { Plan } from "../../api_types.d.ts" */
+/** @import { Plan, Route } from "../../api_types.d.ts" */
 /** @import { HandEdit, Lock, MissionPageState, MissionSelection, PickedTarget, ShownPlan, ShownRoute } from "../types.d.ts" */
 
 /** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
@@ -63,6 +63,12 @@ export function routesOf(plan) {
     name: route.uav,
   }));
 }
+
+/** Where photos of every part are taken on routes, and where the camera looks. @param {readonly Pick<Route, "waypoints">[]} routes */
+export const photosOf = (routes) =>
+  routes.flatMap(({ waypoints }) =>
+    waypoints.flatMap(({ position, task }) => (task?.view ? [{ position, yaw_deg: task.view.yaw_deg }] : [])),
+  );
 
 /**
  * The place of each target in the plan, or with the locks: key → { sequence, letter, number }.
