@@ -62,6 +62,7 @@ SENTENCES = register_sentences({
     "too_little_route_left": gettext_noop(
         "%(uav)s comes to it too soon, or has too little of its route left. Hold it, and plan the rest again."
     ),
+    "takes_photos": gettext_noop("%(uav)s takes photos beside wires. Change its route when it is on its way again."),
     "no_range_left": gettext_noop("%(uav)s has no range left."),
     "too_little_battery_left": gettext_noop("%(uav)s has too little battery left."),
     "does_as_many_as_it_may": gettext_noop("%(uav)s does as many targets as it may."),

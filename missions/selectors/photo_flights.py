@@ -15,6 +15,7 @@ from inspection.models import Asset
 from inspection.selectors.planning import DatasetVersion, terrain_at
 from missions.selectors.tower_sites import TowerOnMap, tower_on_map
 from operation.reasons import Reason, reason_from_json
+from operation.version import VERSION as PROGRAM_VERSION
 from planning.context import ResolvedTarget
 from planning.task import ViewsRequest, views_to_json
 from planning.views.detail_views import DetailPlan, DetailSpeeds, TooManyPhotos, detail_plan
@@ -98,8 +99,8 @@ def _flight(found: TowerOnMap, plan: DetailPlan, views: ViewsRequest) -> PhotoFl
 def kept_by(asset: int, views: ViewsRequest, version: DatasetVersion) -> dict[str, Any]:
     """Return what a tower's photos are planned and proven by; what is kept of them is kept by it."""
     return {
-        "version": VERSION, "asset": asset, "views": views_to_json(views), "map": str(version), "terrain": str(terrain_at(version)),
-        "rules": [repr(settings.CLEARANCE_RULES), settings.FLIGHT_RULES.max_agl_m],
+        "version": [VERSION, PROGRAM_VERSION], "asset": asset, "views": views_to_json(views), "map": str(version),
+        "terrain": str(terrain_at(version)), "rules": [repr(settings.CLEARANCE_RULES), settings.FLIGHT_RULES.max_agl_m],
     }  # fmt: skip
 
 

@@ -90,6 +90,8 @@ def _prefix(rest: Rest, before: int | None) -> tuple[tuple[RoutePoint, ...], tup
     begin = RoutePoint(here.position, WaypointKind.START, agl_m)
     transit_m = settings.FLIGHT_RULES.transit_agl_m
     in_stretch = last.target_id is not None and last.target_id == ahead.target_id
+    if in_stretch and any(row.target_id == last.target_id and (row.task or {}).get("view") for row in rows):
+        raise CannotLeave(Reason("takes_photos", {"uav": rest.name}))  # a leg from here would be flown as fast as on the way
     leave: int | None = here.ahead - 1
     if not rest.is_held or in_stretch or agl_m > transit_m + HEIGHT_ROUNDING_M:
         lead_s = 0.0 if rest.is_held else LEAD_S

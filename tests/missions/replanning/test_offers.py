@@ -50,6 +50,18 @@ def test_what_a_uav_that_failed_leaves_is_offered_to_the_other(flight):
     assert not flight.mission.commands.filter(kind=CommandKind.HOLD).exists()
 
 
+def test_a_route_is_not_left_amid_photos_beside_wires(flight):
+    mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[0].pk, flight=1, end=FlightEnd.FAILED)
+    flight.fly_to(1, 2, 0.5)
+    view = {"yaw_deg": 90.0, "pitch_deg": 0.0, "distance_m": 20.0, "focal_length_mm": 21.0, "clearance_m": 9.0, "heading_deg": None}
+    waypoints = flight.route(1).waypoints
+    taken = {"target": waypoints.get(sequence=2).target, "task": {"kind": "photo", "hold_s": 3.0, "view": view}}
+    waypoints.filter(sequence__in=(1, 2)).update(**taken)
+    offer = flight.offer()
+    assert "Kite takes photos beside wires" in f"{offer.outcome} {offer.difference}"
+    assert offer.continuation is None
+
+
 def test_a_continued_route_goes_on_from_where_the_uav_flies_and_ends_at_its_home(flight):
     mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[0].pk, flight=1, end=FlightEnd.FAILED)
     flight.fly_to(1, 3, 0.5)
