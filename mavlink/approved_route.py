@@ -15,7 +15,11 @@ END_ACTIONS = (RETURN, LAND, HOVER, BASE)
 
 def photo_clearances_m(waypoints: Sequence["FrozenWaypoint"]) -> dict[int, float]:
     """What the flights through photos keep from wires and supports [m], by the sequences of the waypoints that their legs lead to."""
-    of_target = {own.target: own.task.view.clearance_m for own in waypoints if own.task is not None and own.task.view is not None}
+    of_target = {
+        own.target: own.task.view.clearance_m
+        for own in waypoints
+        if own.target is not None and own.task is not None and own.task.view is not None
+    }
     return {
         after.sequence: of_target[after.target]
         for before, after in pairwise(waypoints)

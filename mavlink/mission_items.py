@@ -1,8 +1,9 @@
 """Converts an approved route to the mission items of its flights.
 
 The items use only what both autopilots store. ArduPilot truncates a waypoint's hold to whole seconds, so it is rounded up, and an altitude
-to centimetres, so it is sent in centimetres. It discards a waypoint's radius and yaw, so they are left to the autopilot. Items without a
-position use the frame MISSION, the only one that PX4 accepts for them.
+to centimetres, so it is sent in centimetres. It discards a waypoint's radius and yaw, so they are left to the autopilot, but for the radius
+beside wires, of which ArduPilot is sent none (see supported_items). Items without a position use the frame MISSION, the only one that PX4
+accepts for them.
 
 Photos with a view are aimed by a region of interest, before the waypoint so that the UAV turns on its way. None looks straight down (see
 planning/views/detail_views.py): the bearing of a place under the UAV is noise, and the nose of one without a panning gimbal follows it.
@@ -19,7 +20,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from mavlink.approved_route import HOVER, Flight, FrozenRoute, FrozenWaypoint
+from mavlink.approved_route import HOVER, Flight, FrozenRoute, FrozenWaypoint, photo_clearances_m
+from mavlink.mission_sync.supported_items import PHOTO_RADIUS_M
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from planning.task import Task, TaskKind, View
 
@@ -90,7 +92,7 @@ def _items(flight: Flight, route: FrozenRoute, rules: ItemRules) -> Iterator[Mis
         raise CannotBeFlown("take-off-height", "The route's first waypoint is not above its take-off.")
     if route.begun_by is None:
         yield _at(mavlink.MAV_CMD_NAV_TAKEOFF, first, (0.0, 0.0, 0.0, math.nan))
-    flown_mps, photos = 0.0, 0
+    flown_mps, photos, beside_wires = 0.0, 0, photo_clearances_m(flight.waypoints)
     for place, waypoint in enumerate(flight.waypoints):
         wanted_mps = route.cruise_speed_mps if waypoint.speed_mps is None else waypoint.speed_mps
         if waypoint.sequence <= begun_by + 1 or abs(wanted_mps - flown_mps) > rules.speed_step_mps:
@@ -102,6 +104,9 @@ def _items(flight: Flight, route: FrozenRoute, rules: ItemRules) -> Iterator[Mis
             yield from _aimed_photo(waypoint, waypoint.task, waypoint.task.view, photos, rules)
             if follows is None or not _is_photographed(flight, waypoint.target, place + 1):
                 yield _plain(mavlink.MAV_CMD_DO_SET_ROI_NONE, (0.0, 0.0, 0.0, 0.0), waypoint)
+            continue
+        if waypoint.sequence in beside_wires:
+            yield _hold_at(waypoint, 0.0 if waypoint.task is None else waypoint.task.hold_s, PHOTO_RADIUS_M)
             continue
         yield from _waypoint(waypoint, waypoint.task, is_stretch=_same_target(waypoint, follows), rules=rules)
     if flight.end_action != HOVER:
@@ -131,11 +136,11 @@ def _aimed_photo(waypoint: FrozenWaypoint, task: Task, view: View, number: int, 
     """One photo; `number` counts those of the flight from 1, so that a repeated item takes no second one."""
     place, height_m = aim_point(waypoint, view)
     yield _item(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, replace(waypoint, position=place), (0.0, 0.0, 0.0, 0.0), height_m)
-    stays_s = max(task.hold_s - rules.photo_s, 0.0)
+    stays_s = max(task.hold_s - rules.photo_s, 1.0)  # it stops: photos are bends of the flight
     if view.heading_deg is None:
-        yield _hold_at(waypoint, stays_s)
+        yield _hold_at(waypoint, stays_s, PHOTO_RADIUS_M)
     else:
-        yield _hold_at(waypoint, 1.0)  # stopped: the next item turns the nose, which setting out to a waypoint would undo
+        yield _hold_at(waypoint, 1.0, PHOTO_RADIUS_M)  # stopped: the next item turns the nose, which setting out to a waypoint would undo
         yield _plain(mavlink.MAV_CMD_CONDITION_YAW, (view.heading_deg, 0.0, 0.0, 0.0), waypoint)
         yield _delay(waypoint, stays_s - 1.0)
     yield _plain(mavlink.MAV_CMD_IMAGE_START_CAPTURE, (0.0, 0.0, 1.0, float(number)), waypoint)
@@ -165,8 +170,9 @@ def _same_target(waypoint: FrozenWaypoint, follows: FrozenWaypoint | None) -> bo
     return follows is not None and waypoint.target is not None and follows.target == waypoint.target
 
 
-def _hold_at(waypoint: FrozenWaypoint, hold_s: float) -> MissionItem:
-    return _at(mavlink.MAV_CMD_NAV_WAYPOINT, waypoint, (float(math.ceil(hold_s)), 0.0, 0.0, math.nan))
+def _hold_at(waypoint: FrozenWaypoint, hold_s: float, radius_m: float = 0.0) -> MissionItem:
+    """radius_m: within which it counts as reached; 0: by the autopilot's setting."""
+    return _at(mavlink.MAV_CMD_NAV_WAYPOINT, waypoint, (float(math.ceil(hold_s)), radius_m, 0.0, math.nan))
 
 
 def _at(command: int, waypoint: FrozenWaypoint, parameters: tuple[float, float, float, float]) -> MissionItem:

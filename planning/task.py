@@ -9,6 +9,7 @@ from planning.views.camera import Camera, camera_from_json, camera_to_json
 
 MAX_HOLD_S = 3_600.0
 VIEWS_HOLD_S = 3.0  # at each photo of a view plan: until the UAV and its camera stand still, and for the photo
+VIEWS_HOLDS_S = (2.0, 60.0)  # that may be asked for
 TURN_S = 3.0  # longer where the UAV has to turn its nose: half a turn at the usual 60 degrees a second
 MM_PER_M = 1_000.0
 

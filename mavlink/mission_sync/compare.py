@@ -18,7 +18,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
-from mavlink.mission_sync.supported_items import as_old_roi, as_px4
+from mavlink.mission_sync.supported_items import as_ardupilot, as_old_roi, as_px4
 from mavlink.mission_sync.wire import OnboardItem, OnboardList
 from mavlink.vehicle_plan import MissionItem
 from operation.reasons import Reason
@@ -197,6 +197,8 @@ def is_same(wanted: MissionItem, held: MissionItem, autopilot_type: AutopilotTyp
 
 
 def _of_item(wanted: MissionItem, held: MissionItem, autopilot_type: AutopilotType) -> Iterator[tuple[str, str, str]]:
+    if autopilot_type is AutopilotType.ARDUPILOT:
+        wanted = as_ardupilot(wanted)
     if autopilot_type is AutopilotType.ARDUPILOT and held.command == mavlink.MAV_CMD_DO_SET_ROI:
         wanted = as_old_roi(wanted)
     if autopilot_type is AutopilotType.PX4:

@@ -14,6 +14,7 @@ from mavlink.autopilot_type import AutopilotType
 from mavlink.vehicle_plan import MissionItem
 
 Version = tuple[int, int, int]
+PHOTO_RADIUS_M = 0.5  # within which a waypoint beside wires is reached: PX4's own may be 10 m
 ROI_SINCE: Version = (4, 7, 0)
 KNOWN_SINCE: Mapping[AutopilotType, Mapping[int, Version]] = {AutopilotType.ARDUPILOT: {mavlink.MAV_CMD_IMAGE_START_CAPTURE: (4, 4, 0)}}
 NAMES = {AutopilotType.ARDUPILOT: "ArduPilot", AutopilotType.PX4: "PX4"}
@@ -44,13 +45,22 @@ def as_px4(item: MissionItem) -> MissionItem:
     return replace(item, command=mavlink.MAV_CMD_NAV_DELAY, parameters=(0.0, -1.0, -1.0, -1.0))
 
 
+def as_ardupilot(item: MissionItem) -> MissionItem:
+    """Return a waypoint beside wires without its radius, which ArduPilot discards: it flies on to the place while it waits there."""
+    if item.command != mavlink.MAV_CMD_NAV_WAYPOINT or item.parameters[1] != PHOTO_RADIUS_M:
+        return item
+    hold_s, _radius_m, passing_m, yaw_deg = item.parameters
+    return replace(item, parameters=(hold_s, 0.0, passing_m, yaw_deg))
+
+
 def as_known(items: Sequence[MissionItem], autopilot_type: AutopilotType, firmware: Version | None) -> tuple[MissionItem, ...]:
     """Return the items as this firmware accepts them. An unknown version counts as an old one."""
     if autopilot_type is AutopilotType.PX4:
         return tuple(map(as_px4, items))
-    if autopilot_type is not AutopilotType.ARDUPILOT or (firmware is not None and firmware >= ROI_SINCE):
+    if autopilot_type is not AutopilotType.ARDUPILOT:
         return tuple(items)
-    return tuple(map(as_old_roi, items))
+    items = tuple(map(as_ardupilot, items))
+    return items if firmware is not None and firmware >= ROI_SINCE else tuple(map(as_old_roi, items))
 
 
 def unknown_items(items: Sequence[MissionItem], autopilot_type: AutopilotType, firmware: Version | None) -> list[UnknownItem]:

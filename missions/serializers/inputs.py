@@ -58,7 +58,7 @@ from planning.energy.performance import (
 )
 from planning.problem import Objective as RoutingObjective
 from planning.request import GO_ON, EndAction, LostLinkRequest, lost_link_from_json
-from planning.task import DEFAULT_HOLD_S, MAX_HOLD_S, VIEWS_HOLD_S, Task, TaskKind
+from planning.task import DEFAULT_HOLD_S, MAX_HOLD_S, VIEWS_HOLD_S, VIEWS_HOLDS_S, Task, TaskKind
 from workspace.api import strict_serializers as serializers
 from workspace.api.external_data import AttributesField, ExternalIdField
 from workspace.api.fields import FiniteFloatField
@@ -75,6 +75,10 @@ class TaskSerializer(KnownFieldsSerializer):
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if attrs.get("views") and attrs["kind"] != TaskKind.PHOTO:
             raise serializers.ValidationError({"views": _("Only photos have views.")})
+        low_s, high_s = VIEWS_HOLDS_S
+        if attrs.get("views") and not low_s <= attrs.get("hold_s", VIEWS_HOLD_S) <= high_s:
+            problem = _("From %(low)s to %(high)s s at each photo.") % {"low": f"{low_s:g}", "high": f"{high_s:g}"}
+            raise serializers.ValidationError({"hold_s": problem})
         return attrs
 
 

@@ -13,6 +13,7 @@ from results.finding_states import FindingState
 from results.models.media import Medium
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
+MAX_MARKS = 50  # of a finding
 MAX_NOTE_LENGTH = 2_000
 MAX_REFERENCE_LENGTH = 100
 STATES = [

@@ -6,10 +6,10 @@ from datetime import date
 from typing import Any
 from uuid import UUID
 
-from django.db.models import QuerySet
+from django.db.models import Prefetch, QuerySet
 
 from inspection.models import Asset
-from results.models import Finding
+from results.models import Evidence, Finding
 from results.selectors.media import keys_of_asset
 from workspace.models import AuditEntry
 
@@ -48,7 +48,7 @@ def findings_that_match(organisation_id: int, wanted: FindingFilter) -> QuerySet
         findings = findings.filter(pk__in=Finding.objects.filter(evidence__medium=wanted.medium).values("pk"))
     if wanted.due_before is not None:
         findings = findings.filter(due_on__lt=wanted.due_before)
-    return findings.select_related("created_by").prefetch_related("evidence")
+    return findings.select_related("created_by").prefetch_related(Prefetch("evidence", Evidence.objects.select_related("author")))
 
 
 def history_of_finding(finding: Finding) -> QuerySet[AuditEntry]:

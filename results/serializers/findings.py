@@ -8,7 +8,7 @@ from missions.serializers.uavs import PointSerializer
 from results.categories import BY_CODE, CATEGORIES, COMPONENTS
 from results.finding_states import FindingState
 from results.models import Evidence, Finding, FindingComment, Observation, Outcome, SeveritySource
-from results.models.findings import MAX_NOTE_LENGTH, MAX_REFERENCE_LENGTH
+from results.models.findings import MAX_MARKS, MAX_NOTE_LENGTH, MAX_REFERENCE_LENGTH
 from results.serializers.media import MAX_ID
 from workspace.api import strict_serializers as serializers
 from workspace.models import User
@@ -16,7 +16,6 @@ from workspace.models import User
 STATES = [state.value for state in FindingState]
 SHAPES = ("box", "polygon")
 MAX_POINTS = 200
-MAX_MARKS = 50
 MAX_PIXEL = 1e6
 
 

@@ -15,7 +15,8 @@ from inspection.selectors import asset_label
 from missions.models import InspectionTarget, Mission
 from results.categories import BY_CODE, SCHEME
 from results.finding_states import FindingState, after_observation, may_set
-from results.models import Evidence, Finding, FindingComment, Medium, Observation, Outcome, Review, SeveritySource
+from results.models import Evidence, Finding, FindingComment, Medium, MediumState, Observation, Outcome, Review, SeveritySource
+from results.models.findings import MAX_MARKS
 from results.services.media import review_medium
 from workspace.audit import record_change
 from workspace.leases import lock_until_end
@@ -114,8 +115,10 @@ def add_evidence(*, finding: Finding, actor: User, mark: Mark) -> Finding:
     with transaction.atomic():
         held = _locked(finding, None)
         before = facts_of(held)
+        if held.evidence.count() >= MAX_MARKS:
+            raise FindingRefused("evidence", _("A finding has at most %(most)s marks.") % {"most": MAX_MARKS})
         _add_mark(held, mark, actor)
-        at = mark.medium.taken_at or mark.medium.received_at
+        at = min(mark.medium.taken_at or mark.medium.received_at, timezone.now())
         held.first_seen_at, held.last_seen_at = min(held.first_seen_at, at), max(held.last_seen_at, at)
         _store(held)
         _record(held, actor, "add-evidence", before)
@@ -138,11 +141,15 @@ def remove_evidence(*, evidence: Evidence, actor: User) -> Finding:
 
 def observe_finding(*, finding: Finding, actor: User, medium: Medium, outcome: str) -> Finding:
     """Store that a user has looked for a finding on a later medium, and move its state on. Raises FindingRefused."""
-    at = medium.taken_at or medium.received_at
+    if medium.state == MediumState.WAITING:
+        raise FindingRefused("medium", _("The photo has not been read yet. Try again in a minute."))
+    at = medium.taken_at
+    if at is None or at > timezone.now() + timedelta(days=1):
+        raise FindingRefused("medium", _("Nobody knows when this photo was taken: it proves nothing later."))
     with transaction.atomic():
         held = _locked(finding, None)
         before = facts_of(held)
-        if held.asset_id is not None and medium.asset_id != held.asset_id:
+        if held.asset_id is None or medium.asset_id != held.asset_id:
             raise FindingRefused("medium", _("The photo is not of the finding's asset."))
         if at <= held.last_seen_at:
             raise FindingRefused("medium", _("The photo is not later than the last one that shows the finding."))

@@ -24,12 +24,19 @@ class IsEvidence(Exception):
 def delete_medium(*, medium: Medium, actor: User) -> None:
     """Delete a medium and its files. Raises IsEvidence."""
     with transaction.atomic():
+        Medium.objects.select_for_update(of=["self"]).get(pk=medium.pk)  # it may be read at present, which stores previews
         if Evidence.objects.filter(medium=medium).exists() or Observation.objects.filter(medium=medium).exists():
             raise IsEvidence
         facts = {"file_name": medium.file_name, "sha256": medium.sha256, "size_bytes": medium.size_bytes}
         record_change(
             organisation=medium.organisation, actor=actor, action="delete", subject_type="medium", subject_id=medium.pk, before=facts
         )
-        deleted = Medium(organisation_id=medium.organisation_id, sha256=medium.sha256, derivatives=medium.derivatives)
+        organisation, sha256 = medium.organisation_id, medium.sha256
         medium.delete()
-        transaction.on_commit(lambda: delete_files(deleted))
+        transaction.on_commit(lambda: _delete_files(organisation, sha256))
+
+
+def _delete_files(organisation: int, sha256: str) -> None:
+    """Delete the files of a medium, unless the same file has been sent again meanwhile."""
+    if not Medium.objects.filter(organisation=organisation, sha256=sha256).exists():
+        delete_files(organisation, sha256)

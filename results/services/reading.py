@@ -1,14 +1,17 @@
 """Reads received media: what they state and what they show, in a process with limits; then places them."""
 
+import logging
 import tempfile
 import time
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
+from celery.exceptions import SoftTimeLimitExceeded
 from django.conf import settings
 from django.contrib.gis.geos import Point
-from django.db import transaction
+from django.db import OperationalError, transaction
+from django.utils import timezone
 
 from results.media_metadata.media_types import MEDIA_TYPES
 from results.media_metadata.photo_process import ReadPhoto, read_photo
@@ -19,7 +22,11 @@ from results.services.store import MediumMissing, derivative_name, original_as_f
 from results.services.uploads import upload_folder
 from workspace.leases import try_lock_until_end
 
+MAX_SIDE_PX = 2**31 - 1
+FIRST_YEAR, AHEAD = 1980, timedelta(days=1)  # of times that a camera may state
 READING_LOCK = 0x05A7_0035  # advisory lock, with a slot: so many photos are read at once
+
+logger = logging.getLogger(__name__)
 
 
 def read_waiting(*, budget_s: float) -> bool:
@@ -34,7 +41,8 @@ def read_waiting(*, budget_s: float) -> bool:
 def _read_next() -> bool:
     """Read the medium that has waited longest; False where none waits, or others read as many as may be read at once.
 
-    The row stays locked meanwhile: if this process is killed, the medium still waits.
+    The row stays locked meanwhile: if this process is killed, the medium still waits. One that cannot be stored as it was read is marked
+    as not shown, so that it holds up no other.
     """
     with transaction.atomic():
         slots = max(settings.DATA_WORKERS - 1, 1)  # one worker stays free for imports
@@ -44,7 +52,14 @@ def _read_next() -> bool:
         medium = waiting.order_by("received_at").first()
         if medium is None:
             return False
-        read_medium(medium)
+        try:
+            with transaction.atomic():
+                read_medium(medium)
+        except (OSError, OperationalError, SoftTimeLimitExceeded):
+            raise  # of the store, the database or the worker: it is read again
+        except Exception:
+            logger.exception("medium %s cannot be read", medium.pk)
+            Medium.objects.filter(pk=medium.pk).update(state=MediumState.NOT_SHOWN, fault="medium_decoder_failed")
     return True
 
 
@@ -59,7 +74,7 @@ def read_medium(medium: Medium) -> None:
             found = ReadPhoto(None, None, None, {}, "missing")
     medium.state = MediumState.NOT_SHOWN if found.fault else MediumState.READY
     medium.fault = f"medium_{found.fault}" if found.fault else ""
-    medium.width_px, medium.height_px = found.width_px, found.height_px
+    medium.width_px, medium.height_px = (size if (size or 0) <= MAX_SIDE_PX else None for size in (found.width_px, found.height_px))
     medium.derivatives = found.derivatives
     if found.record is not None:
         _take_record(medium, found.record)
@@ -87,12 +102,17 @@ def _take_record(medium: Medium, record: MediaRecord) -> None:
         attitude = record.attitude
         medium.camera_yaw_deg, medium.camera_pitch_deg, medium.camera_roll_deg = attitude.yaw_deg, attitude.pitch_deg, attitude.roll_deg
         medium.attitude_source = attitude.source
-    if record.taken_at is not None:
+    if record.taken_at is not None and _can_be(record.taken_at):
         medium.taken_at = record.taken_at
         medium.taken_at_source = TakenAtSource.GPS if record.time_source == TimeSource.GPS else TakenAtSource.CAMERA
-    elif record.taken_local is not None:
+    elif record.taken_local is not None and _can_be(record.taken_local.replace(tzinfo=UTC)):
         medium.taken_at = _in_zone(record.taken_local, medium.organisation.time_zone)
         medium.taken_at_source = TakenAtSource.LOCAL
+
+
+def _can_be(taken_at: datetime) -> bool:
+    """Whether a photo can have been taken then: a camera whose clock was never set says another time."""
+    return taken_at.year >= FIRST_YEAR and taken_at <= timezone.now() + AHEAD
 
 
 def _in_zone(local: datetime, time_zone: str) -> datetime:

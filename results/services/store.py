@@ -13,6 +13,7 @@ from typing import IO
 from django.core.files import File
 from django.core.files.storage import Storage, storages
 
+from results.media_metadata.photo_reader import EDGES_PX
 from results.models import Medium
 
 
@@ -72,11 +73,7 @@ def original_as_file(medium: Medium) -> Iterator[IO[bytes]]:
         yield stored
 
 
-def delete_files(medium: Medium) -> None:
-    """Delete original and derivatives."""
-    edges = [int(edge) for edge in medium.derivatives]
-    for name in (
-        original_name(medium.organisation_id, medium.sha256),
-        *(derivative_name(medium.organisation_id, medium.sha256, edge) for edge in edges),
-    ):
+def delete_files(organisation: int, sha256: str) -> None:
+    """Delete original and derivatives, if they are there."""
+    for name in (original_name(organisation, sha256), *(derivative_name(organisation, sha256, edge) for edge in EDGES_PX)):
         store().delete(name)

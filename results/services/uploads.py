@@ -211,8 +211,8 @@ def adopt_subject(medium: Medium, subject: Subject) -> None:
     is_free = medium.mission_id is None and medium.placement in (Placement.WAITING, Placement.UNPLACED)
     if not is_free or subject == Subject():
         return
-    medium.mission, medium.uav = subject.mission, subject.uav
-    medium.target, medium.asset = subject.target, subject.asset
+    medium.mission, medium.uav = subject.mission, subject.uav or medium.uav
+    medium.target, medium.asset = subject.target, subject.asset or (None if subject.target is None else subject.target.asset)
     is_stated = subject.target is not None or subject.asset is not None
     medium.placement = Placement.STATED if is_stated else Placement.WAITING
     medium.state = MediumState.WAITING

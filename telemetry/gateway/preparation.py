@@ -6,6 +6,7 @@ from datetime import datetime
 from typing import Any
 
 from django.conf import settings
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
@@ -21,6 +22,7 @@ from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
 from operation.reasons import Reason, text_reason
+from planning.views.photo_flight import SPEED_MPS as PHOTO_SPEED_MPS
 from telemetry.services.links.onboard_lists import LoadedLists, loaded_on
 from telemetry.services.returns.along_route import OnBoard, along_route, held_flight
 
@@ -30,6 +32,7 @@ FLIES_LIST = (CommandKind.START, CommandKind.RESUME)
 EMPTY = FlightLoad(())
 KNOWN_LOADS = 5
 NEW_S = 10.0
+PHOTO_LEG_M = 2.0  # of a leg beside wires: errors of position
 
 
 def item_to_begin_with(load: FlightLoad, begun_by: int, state: VehicleState) -> int | None:
@@ -48,7 +51,8 @@ def item_to_begin_with(load: FlightLoad, begun_by: int, state: VehicleState) -> 
             beside = beside_place(load.mission[number], state.position, state.altitude_relative_m)
         else:
             beside = beside_leg(load, number, state.position, state.position, state.altitude_relative_m)
-        if beside is None or abs(beside.above_m) > settings.TAKE_OFF_HEIGHT_M:
+        away_m, above_m = _allowed_m(load, number)
+        if beside is None or beside.away_m > away_m or abs(beside.above_m) > above_m:
             continue
         if beside.away_m <= nearest_m - (0.0 if found is None else SAME_M):
             found, nearest_m = number, beside.away_m
@@ -243,12 +247,26 @@ def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s
     beside = beside_leg(load, item, take_off.position, state.position, state.altitude_relative_m)
     if beside is None:
         return _cannot("flown-already", "flown_to_end")
-    if beside.away_m > settings.RESUME_DISTANCE_M:
-        return _cannot("off-route", "beside_leg", metres=round(beside.away_m), allowed=round(settings.RESUME_DISTANCE_M))
-    if abs(beside.above_m) > settings.TAKE_OFF_HEIGHT_M:
+    away_m, above_m = _allowed_m(load, item)
+    if beside.away_m > away_m:
+        return _cannot("off-route", "beside_leg", metres=round(beside.away_m), allowed=round(away_m))
+    if abs(beside.above_m) > above_m:
         reason = "above_leg" if beside.above_m > 0 else "below_leg"
-        return _cannot("off-height", reason, metres=round(abs(beside.above_m)), allowed=round(settings.TAKE_OFF_HEIGHT_M))
+        return _cannot("off-height", reason, metres=round(abs(beside.above_m)), allowed=round(above_m))
     return None
+
+
+def _allowed_m(load: FlightLoad, item: int) -> tuple[float, float]:
+    """Return how far beside and above the leg to an item a UAV may be that flies straight to it; beside wires it must be on the leg.
+
+    Legs beside wires are those at the speed of photo flights, in a list with numbered photos.
+    """
+    until = load.mission[: item + 1]
+    speeds = [own.parameters[1] for own in until if own.command == mavlink.MAV_CMD_DO_CHANGE_SPEED]
+    takes_photos = any(own.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE and own.parameters[3] > 0.0 for own in load.mission)
+    if takes_photos and speeds and speeds[-1] <= PHOTO_SPEED_MPS:
+        return PHOTO_LEG_M, PHOTO_LEG_M
+    return settings.RESUME_DISTANCE_M, settings.TAKE_OFF_HEIGHT_M
 
 
 def _is_new(sent_at_s: float | None, now_s: float) -> bool:

@@ -1,8 +1,11 @@
 """Photos of a mission."""
 
 from collections.abc import Iterable, Iterator
+from datetime import timedelta
 
+from django.conf import settings
 from django.db.models import Count, QuerySet
+from django.utils import timezone
 
 from mavlink.decoding.captures import AttitudeSource
 from mavlink.decoding.gimbal_attitude import YawFrame
@@ -48,10 +51,14 @@ def photos_by_uav(mission: Mission) -> dict[int, int]:
 
 
 def achieved_photos(mission: Mission) -> list[PhotoOfMission] | None:
-    """Return the photos that UAVs of a mission reported, for what they prove; None while nothing was flown or reported.
+    """Return the photos that UAVs of a mission reported, for what they prove; None while nothing was flown or reported, and of
+    flights whose telemetry is not kept any more.
 
     Where only the vehicle's attitude is known, or a yaw from its nose, the camera's is unknown.
     """
+    oldest = None if settings.TELEMETRY_DAYS <= 0 else timezone.now() - timedelta(days=settings.TELEMETRY_DAYS)
+    if oldest is not None and mission.started_at is not None and mission.started_at < oldest:
+        return None  # they have been deleted with the telemetry, or soon are
     places = {row.uav_id: row.sequence for row in mission.mission_uavs.all()}
     found = [_photo(one, places.get(one.uav_id)) for one in Capture.objects.filter(mission=mission).order_by(*ORDER).iterator()]
     return found if found or mission.started_at is not None else None

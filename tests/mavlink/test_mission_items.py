@@ -232,10 +232,33 @@ def test_a_gimbal_that_does_not_pan_around_has_the_nose_turned_once_it_stands() 
     assert commands(mission[3:9]) == [LOOK_AT, WAYPOINT, mavlink.MAV_CMD_CONDITION_YAW, DELAY, PHOTO, DELAY]
     assert mission[5].parameters == (200.0, 0.0, 0.0, 0.0), "the shorter way, from north"
     assert [item.parameters[0] for item in (mission[4], mission[6], mission[8])] == [1.0, 4.0, 1.0], "six seconds in all"
-    assert as_known(mission, AutopilotType.ARDUPILOT, (4, 7, 0)) == mission
+    assert commands(as_known(mission, AutopilotType.ARDUPILOT, (4, 7, 0))) == commands(mission)
     on_px4 = as_known(mission, AutopilotType.PX4, None)
     assert mavlink.MAV_CMD_CONDITION_YAW not in commands(on_px4)
     assert len(on_px4) == len(mission)
     assert on_px4[5].parameters[0] == 0.0
     held = tuple(OnboardItem(item, goes_on=True) for item in on_px4)
     assert not differences(mission, held, AutopilotType.PX4), "the readback is that of the approved list"
+
+
+def test_beside_wires_a_waypoint_counts_as_reached_near_it_alone() -> None:
+    """PX4's own radius may be 10 m; ArduPilot keeps none, and is sent none."""
+    mission = photographed(view(), view(180.0))
+    waypoints = [item for item in mission if item.command == WAYPOINT]
+    assert [item.parameters[1] for item in waypoints] == [0.0, 0.0, 0.5, 0.5, 0.5, 0.0]
+    assert as_known(mission, AutopilotType.PX4, None) == mission
+    on_ardupilot = as_known(mission, AutopilotType.ARDUPILOT, (4, 7, 0))
+    assert {item.parameters[1] for item in on_ardupilot if item.command == WAYPOINT} == {0.0}
+    kept = (replace(item, parameters=tuple(0.0 if math.isnan(one) else one for one in item.parameters)) for item in on_ardupilot)
+    assert not differences(mission, tuple(OnboardItem(item, goes_on=True) for item in kept), AutopilotType.ARDUPILOT)
+
+
+def test_a_photo_always_stops_the_uav() -> None:
+    short = Task(TaskKind.PHOTO, 0.0, view=view())
+    mission = with_task(short)
+    assert [item.parameters[0] for item in mission if item.command == WAYPOINT][1] >= 1.0
+
+
+def test_a_view_without_a_target_makes_no_leg_one_beside_wires() -> None:
+    free = waypoint(1, WaypointKind.PASS, task=Task(TaskKind.PHOTO, 3.0, view=view()))
+    assert photo_clearances_m([waypoint(0, WaypointKind.START), free, waypoint(2, WaypointKind.END)]) == {}

@@ -15,8 +15,8 @@ from results.finding_states import BY_USERS, FindingState, after_observation, ma
 from results.models import Finding, Medium
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
-from tests.results.photos import dji_photo
-from tests.results.sending import upload_and_read
+from tests.results.photos import dji_photo, file_of, picture
+from tests.results.sending import upload, upload_and_read
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db
@@ -116,7 +116,7 @@ def test_done_is_verified_by_a_later_photo_that_does_not_show_it_and_by_nothing_
     same_day = photo(client, "2026-06-01T09:00:00", asset=tower.pk)
     refused = post(client, f"/{key}/observations", medium=str(same_day.pk), outcome="not_seen")
     assert (refused.status_code, "before the work" in refused.json()["error"]["message"]) == (409, True)
-    later = photo(client, f"{timezone.now() + timedelta(days=9):%Y-%m-%dT%H:%M:%S}", asset=tower.pk)
+    later = photo(client, f"{timezone.now() + timedelta(hours=2):%Y-%m-%dT%H:%M:%S}", asset=tower.pk)
     verified = post(client, f"/{key}/observations", medium=str(later.pk), outcome="not_seen").json()
     assert (verified["state"], verified["observations"][0]["outcome"]) == ("verified", "not_seen")
 
@@ -125,7 +125,7 @@ def test_seen_again_it_is_open_again(client: Client) -> None:
     tower = ground.tower((10.004, 56.0))
     key = create(client, photo(client, asset=tower.pk)).json()["id"]
     change(client, key, state="done")
-    later = photo(client, f"{timezone.now() + timedelta(days=9):%Y-%m-%dT%H:%M:%S}", asset=tower.pk)
+    later = photo(client, f"{timezone.now() + timedelta(hours=2):%Y-%m-%dT%H:%M:%S}", asset=tower.pk)
     found = post(client, f"/{key}/observations", medium=str(later.pk), outcome="seen").json()
     assert (found["state"], found["last_seen_at"]) == ("open", later.taken_at.isoformat().replace("+00:00", "Z"))
 
@@ -135,6 +135,32 @@ def test_a_photo_of_elsewhere_or_of_before_says_nothing(client: Client) -> None:
     key = create(client, photo(client, asset=tower.pk)).json()["id"]
     for medium in (photo(client, "2027-06-01T08:00:00"), photo(client, "2025-06-01T08:00:00", asset=tower.pk)):
         assert post(client, f"/{key}/observations", medium=str(medium.pk), outcome="not_seen").status_code == 409
+
+
+def test_a_photo_of_unknown_time_proves_nothing_later(client: Client) -> None:
+    tower = ground.tower((10.004, 56.0))
+    key = create(client, photo(client, asset=tower.pk)).json()["id"]
+    change(client, key, state="done")
+    undated = upload_and_read(client, file_of(picture()), asset=tower.pk)
+    refused = post(client, f"/{key}/observations", medium=str(undated.pk), outcome="not_seen")
+    assert (undated.taken_at, refused.status_code, Finding.objects.get(pk=key).state) == (None, 409, "done")
+
+
+def test_a_photo_that_has_not_been_read_proves_nothing(client: Client) -> None:
+    tower = ground.tower((10.004, 56.0))
+    key = create(client, photo(client, asset=tower.pk)).json()["id"]
+    later = f"{timezone.now() + timedelta(hours=2):%Y-%m-%dT%H:%M:%S}"
+    waiting = upload(client, dji_photo(UTCAtExposure=later), asset=tower.pk)
+    refused = post(client, f"/{key}/observations", medium=str(waiting.pk), outcome="not_seen")
+    assert (refused.status_code, list(refused.json()["error"]["details"])) == (409, ["medium"])
+
+
+def test_a_finding_without_an_asset_is_verified_by_no_photo(client: Client) -> None:
+    key = create(client, photo(client, "2026-06-01T08:00:00")).json()["id"]
+    change(client, key, state="done")
+    later = photo(client, f"{timezone.now() + timedelta(hours=2):%Y-%m-%dT%H:%M:%S}")
+    assert Finding.objects.get(pk=key).asset_id is None
+    assert post(client, f"/{key}/observations", medium=str(later.pk), outcome="not_seen").status_code == 409
 
 
 def test_states_follow_the_table() -> None:

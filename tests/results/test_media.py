@@ -7,7 +7,7 @@ import pytest
 from django.test import Client
 
 from results.models import Medium, MediumKind, MediumState, Placement
-from results.services.reading import read_waiting
+from results.services.reading import read_medium, read_waiting
 from tests.accounts.users import a_user, client_of
 from tests.results.photos import dji_photo, exif_of, file_of, picture, taken
 from tests.results.sending import upload, upload_and_read
@@ -51,6 +51,27 @@ def test_a_time_without_a_zone_is_in_that_of_the_organisation(client: Client) ->
     Organisation.objects.update(time_zone="America/New_York")
     medium = upload_and_read(client, file_of(picture(), exif=exif_of(camera=taken("2026:06:01 10:00:00"))))
     assert (medium.taken_at, medium.taken_at_source) == (datetime(2026, 6, 1, 14, tzinfo=UTC), "local")
+
+
+@pytest.mark.parametrize("stated", ["0001:01:01 00:00:00", "9999:12:31 23:59:59", "1970:01:01 00:00:00", "2090:06:01 10:00:00"])
+def test_a_clock_that_was_never_set_gives_no_time_and_holds_up_no_other(client: Client, stated: str) -> None:
+    unset = upload(client, file_of(picture(), exif=exif_of(camera=taken(stated))))
+    other = upload_and_read(client, dji_photo())
+    unset.refresh_from_db()
+    assert (unset.state, unset.taken_at, other.state) == (MediumState.READY, None, MediumState.READY)
+
+
+def test_a_medium_that_cannot_be_stored_is_marked_and_holds_up_no_other(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(medium: Medium) -> None:
+        if medium.pk == bad.pk:
+            raise ValueError("out of range")
+        read_medium(medium)
+
+    bad = upload(client, dji_photo(10.01))
+    monkeypatch.setattr("results.services.reading.read_medium", refuse)
+    other = upload_and_read(client, dji_photo())
+    bad.refresh_from_db()
+    assert (bad.state, bad.fault, other.state) == (MediumState.NOT_SHOWN, "medium_decoder_failed", MediumState.READY)
 
 
 @pytest.mark.parametrize(

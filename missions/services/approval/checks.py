@@ -38,7 +38,19 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
         *_reversed_visits(mission),
         *_height_references(mission, flown),
         *_ground(mission),
+        *([] if is_under_way else _photos_on_another_map(flown, mission)),
     ]
+
+
+def _photos_on_another_map(flown: Sequence[Route], mission: Mission) -> list[RefusalReason]:
+    """Return a refusal for photos beside wires that were planned before the last change of the map.
+
+    The final look at wires does not see wider crossarms or a higher voltage, which photo flights keep clear of.
+    """
+    has_photos = any((waypoint.task or {}).get("view") for route in flown for waypoint in route.waypoints.all())
+    if not has_photos or mission.ground_revision == ground_revision():
+        return []
+    return [RefusalReason("photos_outdated", _("The map has changed since photos beside wires were planned. Plan again."))]
 
 
 def _reversed_visits(mission: Mission) -> list[RefusalReason]:

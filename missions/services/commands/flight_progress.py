@@ -41,12 +41,15 @@ def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
 
 
 def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> None:
-    """Record that a UAV is at a waypoint, by its place in the route: the target there is in progress, those before it are complete."""
+    """Record that a UAV is at a waypoint, by its place in the route: the target there is in progress, those before it are complete.
+
+    A target that takes several waypoints, as photos and stretches do, is complete behind the last of them.
+    """
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state not in ON_ITS_WAY:
             return
-        rows = Route.objects.filter(mission=held, mission_uav__uav=uav_id, continued_by=None, waypoints__kind=WaypointKind.TARGET)
+        rows = Route.objects.filter(mission=held, mission_uav__uav=uav_id, continued_by=None, waypoints__target__isnull=False)
         visits = list(rows.order_by("waypoints__sequence").values_list("waypoints__sequence", "waypoints__target"))
         here = {target for sequence, target in visits if sequence == waypoint}
         to_come = {target for sequence, target in visits if sequence > waypoint}

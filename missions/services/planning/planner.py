@@ -122,6 +122,9 @@ def make_plan(
         release_planning_lock()  # the caller's, if it holds one: nothing after the final check needs it
         if current_dataset_version() == ground.dataset_version:
             return answer
+        if any(target.task.views is not None for target in targets):  # photos are planned on one map with all else
+            ground, targets, deleted = read_targets(request, on_photos)
+            continue
         # Only a plan checked against the current zones, on the terrain version of its heights, is returned.
         ground = planning_read().ground()
         context = planning_context(request, ground, targets, deleted)

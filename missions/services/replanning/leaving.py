@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from django.conf import settings
 
-from inspection.geodesy import path_length_m
+from inspection.geodesy import distance_m, path_length_m
 from missions.services.replanning.rest import Rest
 from operation.reasons import Reason, text_reason
 from planning.energy.conditions import Conditions, air_density
@@ -19,6 +19,7 @@ from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 LEAD_S = 60.0  # from computing to flying: a user decides, the UAV is held and gets its route
 WAIT_S = 90.0  # longest hover meanwhile, for the battery estimate
+BESIDE_PHOTOS_M = 40.0  # of waypoints of a photo flight that is to be flown, or is being flown
 MAX_RESERVE_PERCENT = 90.0  # that a plan can be asked to leave
 
 
@@ -90,8 +91,9 @@ def _prefix(rest: Rest, before: int | None) -> tuple[tuple[RoutePoint, ...], tup
     begin = RoutePoint(here.position, WaypointKind.START, agl_m)
     transit_m = settings.FLIGHT_RULES.transit_agl_m
     in_stretch = last.target_id is not None and last.target_id == ahead.target_id
-    if in_stretch and any(row.target_id == last.target_id and (row.task or {}).get("view") for row in rows):
-        raise CannotLeave(Reason("takes_photos", {"uav": rest.name}))  # a leg from here would be flown as fast as on the way
+    photographed = {row.target_id for row in rows if (row.task or {}).get("view")}
+    if (in_stretch and last.target_id in photographed) or _is_beside(rest, photographed):
+        raise CannotLeave(Reason("takes_photos", {"uav": rest.name}))
     leave: int | None = here.ahead - 1
     if not rest.is_held or in_stretch or agl_m > transit_m + HEIGHT_ROUNDING_M:
         lead_s = 0.0 if rest.is_held else LEAD_S
@@ -116,6 +118,18 @@ def _prefix(rest: Rest, before: int | None) -> tuple[tuple[RoutePoint, ...], tup
     if len(known) < len(heights) or rest.take_off_amsl_m is None:
         return tuple(prefix), None
     return tuple(prefix), (here.between(known[0], known[1]), *known[2:])
+
+
+def _is_beside(rest: Rest, photographed: set[int | None]) -> bool:
+    """Whether the UAV is beside photos that it takes or will take, whichever leg it is on: a new route would begin beside wires."""
+    assert rest.here is not None  # noqa: S101 - the caller has checked it
+    places = [
+        point.position
+        for point, row in zip(rest.points, rest.rows, strict=True)
+        if row.target_id in photographed and point.target in rest.ahead
+    ]
+    away_m = distance_m(np.array(places).reshape(-1, 2), np.array([rest.here.position] * len(places)).reshape(-1, 2))
+    return bool((away_m < BESIDE_PHOTOS_M).any())
 
 
 def _performance(stored: dict[str, object]) -> Performance:

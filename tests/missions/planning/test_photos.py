@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from django.core.cache import cache
 from django.test import Client
+from django.utils import timezone
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -16,10 +17,13 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.spans import spans_of
 from inspection.selectors.planning import planning_read
 from inspection.services import import_terrain
-from missions.models import Mission, Uav, UavType
+from missions.models import Mission, MissionState, Uav, UavType
 from missions.selectors import photo_flights
 from missions.selectors.missions import mission_of_organisation
+from missions.services.approval.checks import reasons_against
 from missions.services.approval.document import approval_document, frozen_route
+from missions.services.commands.flight_progress import mark_waypoint_reached
+from missions.services.planning import planner
 from planning.views.camera import camera_to_json
 from planning.views.catalogue import catalogue
 from tests.accounts.users import a_user, client_of
@@ -238,3 +242,59 @@ def test_no_leg_of_photos_comes_near_any_wire(
                 away_m = float(np.hypot(*(np.array([x, y]) - a - part * (b - a))))
                 assert away_m >= clearance_m - 0.3 or z >= a_m + part * (b_m - a_m) + clearance_m - 0.3
     Mission.objects.all().delete()
+
+
+def test_photos_are_not_approved_on_another_map(here: World, client: Client) -> None:
+    answer = made(client, body(photos_of(here.towers[2])))
+    mission = mission_of_organisation(Organisation.objects.get(), answer["id"])
+    assert "photos_outdated" not in [reason.code for reason in reasons_against(mission, now=timezone.now())]
+    here.towers[1].height_m = 60.0
+    here.towers[1].save()
+    zone_around((11.0, 57.0))
+    mission = mission_of_organisation(Organisation.objects.get(), answer["id"])
+    assert "photos_outdated" in [reason.code for reason in reasons_against(mission, now=timezone.now())]
+
+
+def test_a_map_that_changes_while_photos_are_planned_has_them_planned_anew(here: World, client: Client) -> None:
+    """Photos and all else are of one map: a wire that came meanwhile is kept clear of."""
+    uav, asked = tern(), []
+    whole = planner.plan
+
+    def plan_while_a_line_is_built(*values: Any, **names: Any) -> Any:
+        found = whole(*values, **names)
+        if not asked:
+            frame = LocalFrame.around(*here.towers[2].centre.coords)
+            ends = frame.to_degrees(np.array([[-200.0, 25.0], [200.0, 25.0]])).tolist()
+            power_line([ground.tower(tuple(end), height_m=30.0) for end in ends])
+            zone_around((11.0, 57.0))
+        asked.append(found)
+        return found
+
+    with mock.patch.object(planner, "plan", plan_while_a_line_is_built):
+        mission = made(client, body(photos_of(here.towers[2]), uav=uav))
+    assert len(asked) == 2
+    frame = LocalFrame.around(*here.towers[2].centre.coords)
+    for row in photos(mission["plan"]):
+        _east_m, north_m = frame.to_metres(np.array([row["position"]]))[0]
+        clearance_m = row["task"]["view"]["clearance_m"]
+        assert abs(north_m - 25.0) >= clearance_m or row["altitude_agl_m"] >= 30.0 + clearance_m
+
+
+def test_a_target_is_in_progress_until_its_last_photo(here: World, client: Client) -> None:
+    answer = made(client, body(photos_of(here.towers[2])))
+    mission, uav = Mission.objects.get(pk=answer["id"]), Uav.objects.get()
+    Mission.objects.update(state=MissionState.ACTIVE)
+    rows = answer["plan"]["routes"][0]["waypoints"]
+    own = [place for place, row in enumerate(rows) if row["target"] == 0]
+    states = []
+    for place in (own[0], own[1], own[-1], own[-1] + 1):
+        mark_waypoint_reached(mission_id=mission.pk, uav_id=uav.pk, waypoint=place)
+        states.append(mission.targets.get().state)
+    assert states == ["in-progress", "in-progress", "in-progress", "complete"]
+
+
+@pytest.mark.parametrize("hold_s", [0, 1.5, 61])
+def test_the_time_at_a_photo_stops_the_uav_and_ends(here: World, client: Client, hold_s: float) -> None:
+    response = post(client, "missions", body({"asset": here.towers[2].pk, "task": {"kind": "photo", "hold_s": hold_s, "views": VIEWS}}))
+    assert response.status_code == 400
+    assert "targets.0.task.hold_s" in response.json()["error"]["details"]
