@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
+from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
@@ -17,13 +18,24 @@ from missions.models import UavState
 from missions.selectors.fleet import bases_of_organisation, states_out_of_service
 from missions.selectors.flights import flights_at_the_same_time
 from missions.selectors.photo_flights import OnPhotos, with_photo_flights
-from missions.selectors.planning_rules import planning_rules
 from missions.selectors.resolved_targets import NamedTarget, resolved_targets, whole_assets
 from planning.airspace import Airspace, airspace_on, zone_choice
-from planning.context import OtherFlights, PlanningContext, ResolvedTarget, Terrain
+from planning.context import OtherFlights, PlanningContext, PlanningRules, ResolvedTarget, Terrain
 from planning.request import BaseRequest, EndAction, InvalidRequest, PlanRequest
 from planning.trajectory.heights import GroundModel
 from workspace.models import Organisation
+
+
+def planning_rules() -> PlanningRules:
+    """Return the limits from the settings that a plan keeps."""
+    return PlanningRules(
+        linking=settings.GRAPH_RULES,
+        routing=settings.ROUTING_RULES,
+        flight=settings.FLIGHT_RULES,
+        zones=settings.ZONE_RULES,
+        heights=settings.FLOWN_HEIGHTS,
+        separation=settings.SEPARATION_RULES,
+    )
 
 
 def _says_nothing(planned: int, asked: int) -> None:

@@ -13,7 +13,7 @@ from inspection.zones.activity import Span, active_spans, merged
 from inspection.zones.reach import ZoneTable
 from inspection.zones.schedule import Schedule
 from missions.models import Mission, Route
-from missions.selectors.planning_rules import planning_rules
+from missions.selectors.planning_context import planning_rules
 from planning.checks.zones import MetZone
 from planning.checks.zones import zones_met as checked_zones_met
 from planning.clearance.nearby_zones import NearestZone, nearest_zone, zones_near

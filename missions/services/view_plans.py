@@ -11,8 +11,8 @@ from inspection.models import Asset
 from inspection.selectors.planning import current_dataset_version
 from inspection.selectors.zone_table import zone_table
 from missions.selectors.photo_flights import keep_photo_flight, planned_views
-from missions.selectors.planning_rules import planning_rules
 from missions.selectors.tower_sites import TowerOnMap
+from missions.selectors.zones import zone_margins
 from planning.checks.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.task import MM_PER_M, ViewsRequest, views_to_json
@@ -93,7 +93,7 @@ def _zones(found: TowerOnMap, position: FloatArray) -> list[dict[str, Any]]:
     agl_m = places[:, 2] - found.ground_m(places[:, :2])
     amsl_m = None if found.base_amsl_m is None else places[:, 2] + found.base_amsl_m
     flown = FlownRoute(found.frame.to_degrees(places[:, :2]), agl_m, amsl_m)
-    met = zones_met([flown], zone_table(), planning_rules().margins)
+    met = zones_met([flown], zone_table(), zone_margins())
     return [{"id": key, "name": name} for key, name in dict.fromkeys((zone.zone, zone.name) for zone in met[0])]
 
 
