@@ -64,7 +64,7 @@ class MediumSerializer(answers.Serializer):
     capture = answers.IntegerField(allow_null=True, help_text="the UAV's report of it, where one was found by time and position")
     placement = answers.ChoiceField(choices=Placement.choices, help_text="how it is known what it shows")
     candidates = CandidateSerializer(many=True, help_text="at most two targets that come into question")
-    review = answers.ChoiceField(choices=Review.choices, allow_blank=True, help_text="empty: nobody has looked at it")
+    review = answers.ChoiceField(choices=Review.choices, allow_blank=True, help_text="empty: not reviewed yet")
     reviewed_at = answers.DateTimeField(allow_null=True)
     received_at = answers.DateTimeField()
     original = answers.CharField(help_text="path of the file as it was sent")

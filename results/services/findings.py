@@ -145,7 +145,7 @@ def observe_finding(*, finding: Finding, actor: User, medium: Medium, outcome: s
         raise FindingRefused("medium", _("The photo has not been read yet. Try again in a minute."))
     at = medium.taken_at
     if at is None or at > timezone.now() + timedelta(days=1):
-        raise FindingRefused("medium", _("Nobody knows when this photo was taken: it proves nothing later."))
+        raise FindingRefused("medium", _("The time of this photo is unknown, so it cannot show a later state."))
     with transaction.atomic():
         held = _locked(finding, None)
         before = facts_of(held)

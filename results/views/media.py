@@ -41,7 +41,7 @@ FILTERS = [
     OpenApiParameter("kind", str, enum=MediumKind.values),
     OpenApiParameter("state", str, enum=MediumState.values),
     OpenApiParameter("placement", str, enum=Placement.values),
-    OpenApiParameter("review", str, enum=[NOT_REVIEWED, *Review.values], description="none: nobody has looked at it"),
+    OpenApiParameter("review", str, enum=[NOT_REVIEWED, *Review.values], description="none: not reviewed yet"),
 ]
 # A file of users is never run, whatever it holds: it is saved, not opened, and could load nothing if it were.
 FILE_HEADERS = {

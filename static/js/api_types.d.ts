@@ -3702,7 +3702,7 @@ export interface components {
             /** @description at most two targets that come into question */
             candidates: components["schemas"]["Candidate"][];
             /**
-             * @description empty: nobody has looked at it
+             * @description empty: not reviewed yet
              *
              *     * `nothing` - Nothing to see
              *     * `findings` - Has findings
