@@ -4,16 +4,17 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import partial
 from typing import Any
 from uuid import UUID
 
 from mavlink.decoding.captures import AttitudeSource, CaptureReport, CaptureSource, PositionSource, TimeSource
-from mavlink.decoding.companion_reports import CompanionCapture, FaultyReport, read_capture
+from mavlink.decoding.companion_reports import CompanionCapture, read_capture
 from mavlink.decoding.gimbal_attitude import YawFrame
 from missions.models import LinkKind
 from telemetry import models
 from telemetry.services.captures import CaptureCount, NewCapture, store_captures
-from telemetry.services.links.companion_reports import USED_AGAIN, RefusedReport, own_missions
+from telemetry.services.links.companion_reports import USED_AGAIN, RefusedReport, read_batch
 
 FUTURE_S = 60.0  # after receipt: the UAV's clock is wrong
 
@@ -26,17 +27,7 @@ class TakenCaptures:
 
 def take_captures(*, uav_id: int, place: tuple[float, float], stream: str, sent: Sequence[Any], received_at: datetime) -> TakenCaptures:
     """Store the valid photos and return the refused ones. `place` is the UAV's last position; `sent` is decoded JSON."""
-    read: dict[int, CompanionCapture] = {}
-    refused: list[RefusedReport] = []
-    for index, capture in enumerate(sent):
-        try:
-            read[index] = read_capture(capture, known_place=place)
-        except FaultyReport as error:
-            refused.append(RefusedReport(index, error.faults))
-    own = own_missions(uav_id, {UUID(capture.mission) for capture in read.values() if capture.mission})
-    for index in [index for index, capture in read.items() if capture.mission and UUID(capture.mission) not in own]:
-        del read[index]
-        refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
+    read, refused = read_batch(sent, partial(read_capture, known_place=place), uav_id)
     new = {index: _new(capture, uav_id, stream, received_at) for index, capture in read.items()}
     refused += [RefusedReport(index, {"sequence": USED_AGAIN}) for index in _numbers_used_again(uav_id, stream, new)]
     reused = {one.index for one in refused}

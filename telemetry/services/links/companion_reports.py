@@ -1,17 +1,20 @@
 """Stores reports from companion computers on the HTTP link in the log."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 from uuid import UUID
 
-from mavlink.decoding.companion_reports import CompanionReport, FaultyReport, read_report
+from mavlink.decoding.companion_reports import CompanionCapture, CompanionReport, FaultyReport, read_report
 from mavlink.decoding.measurement import Measurement
 from missions.models import LinkKind, MissionUav
 from telemetry.models import TelemetryRecord
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
 from telemetry.services.links.http_messages import note_state_over_http
+
+AnyReport = TypeVar("AnyReport", CompanionReport, CompanionCapture)
 
 USED_AGAIN = "Another record has this number in this stream: take a new stream when the numbers begin anew."
 
@@ -35,17 +38,7 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
 
     `place` is the UAV's last position: longitude, latitude [deg]. `sent` is decoded JSON.
     """
-    read: dict[int, CompanionReport] = {}
-    refused: list[RefusedReport] = []
-    for index, record in enumerate(sent):
-        try:
-            read[index] = read_report(record, known_place=place)
-        except FaultyReport as error:
-            refused.append(RefusedReport(index, error.faults))
-    own = own_missions(uav_id, {UUID(report.mission) for report in read.values() if report.mission})
-    for index in [index for index, report in read.items() if report.mission and UUID(report.mission) not in own]:
-        del read[index]
-        refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
+    read, refused = read_batch(sent, partial(read_report, known_place=place), uav_id)
     records = {index: _new_record(report, uav_id, stream, received_at) for index, report in read.items()}
     counts = store_records(list(records.values())) if records else StoredCount()
     if counts.duplicates:
@@ -57,6 +50,22 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
     return TakenReports(counts, sorted(refused, key=lambda fault: fault.index))
 
 
+def read_batch(sent: Sequence[Any], read: Callable[[Any], AnyReport], uav_id: int) -> tuple[dict[int, AnyReport], list[RefusedReport]]:
+    """Return the valid reports of a batch by their index, and the refused ones: faulty, or of a mission that the UAV does not fly."""
+    valid: dict[int, AnyReport] = {}
+    refused: list[RefusedReport] = []
+    for index, report in enumerate(sent):
+        try:
+            valid[index] = read(report)
+        except FaultyReport as error:
+            refused.append(RefusedReport(index, error.faults))
+    own = _own_missions(uav_id, {UUID(report.mission) for report in valid.values() if report.mission})
+    for index in [index for index, report in valid.items() if report.mission and UUID(report.mission) not in own]:
+        del valid[index]
+        refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
+    return valid, refused
+
+
 def _numbers_used_again(uav_id: int, stream: str, records: Mapping[int, NewRecord]) -> list[int]:
     """Return records whose number is stored with another time of measurement: the counter restarted; it is not a repetition."""
     run = TelemetryRecord.objects.filter(stream__uav_id=uav_id, stream__link=LinkKind.HTTP, stream__key=stream)
@@ -64,7 +73,7 @@ def _numbers_used_again(uav_id: int, stream: str, records: Mapping[int, NewRecor
     return [index for index, record in records.items() if stored.get(record.sequence, record.measured_at) != record.measured_at]
 
 
-def own_missions(uav_id: int, named: set[UUID]) -> set[UUID]:
+def _own_missions(uav_id: int, named: set[UUID]) -> set[UUID]:
     if not named:
         return set()
     return set(MissionUav.objects.filter(uav_id=uav_id, mission_id__in=named).values_list("mission_id", flat=True))
