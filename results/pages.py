@@ -4,6 +4,7 @@ from typing import Any
 from uuid import UUID
 
 from django.http import Http404
+from django.shortcuts import get_object_or_404
 
 from inspection.models import Asset
 from inspection.selectors import asset_label
@@ -23,11 +24,8 @@ class ReviewPage(SignedInPage):
         """Return whose photos are reviewed, and the page that this one leads back to; all photos without either."""
         mission_text, asset_text = self.request.GET.get("mission", ""), self.request.GET.get("asset", "")
         if mission_text:
-            mission = Mission.objects.filter(
-                organisation=self.request.user.organisation_id, deleted_at=None, pk=_uuid(mission_text)
-            ).first()
-            if mission is None:
-                raise Http404
+            own = Mission.objects.filter(organisation=self.request.user.organisation_id, deleted_at=None)
+            mission = get_object_or_404(own, pk=_uuid(mission_text))
             return {"query": f"mission={mission.pk}", "name": mission.name, "back": f"/missions/{mission.pk}/report"}
         if asset_text:
             is_number = asset_text.isascii() and asset_text.isdigit() and len(asset_text) < 10

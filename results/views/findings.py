@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from typing import Any
 from uuid import UUID
 
-from django.http import Http404
+from django.shortcuts import get_object_or_404
 from django.urls import reverse
 from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
@@ -14,6 +14,7 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from inspection.models import Asset
 from inspection.views.parameters import invalid
 from missions.serializers.changes import HistoryEntrySerializer, HistoryPageSerializer
 from results.categories import BY_CODE, SCHEME
@@ -34,7 +35,7 @@ from results.services.findings import (
     remove_evidence,
 )
 from results.views.media import ASSET, uuid_of
-from results.views.subjects import asset_or_404, subject_of
+from results.views.subjects import subject_of
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_choice, asked_instant, page_of
@@ -151,9 +152,8 @@ class FindingEvidenceDetail(APIView):
         operation_id="remove_evidence", summary="Remove a mark; the photo stays", responses={200: shapes.InspectionFindingDetailSerializer}
     )
     def delete(self, request: SignedInRequest, finding_id: UUID, evidence_id: int) -> Response:
-        evidence = _finding(request, finding_id).evidence.select_related("medium", "finding").filter(pk=evidence_id).first()
-        if evidence is None:
-            raise Http404
+        marks = _finding(request, finding_id).evidence.select_related("medium", "finding")
+        evidence = get_object_or_404(marks, pk=evidence_id)
         remove_evidence(evidence=evidence, actor=request.user)
         return _answer(request, finding_id)
 
@@ -231,7 +231,7 @@ def asked_findings(request: Request) -> FindingFilter:
         states=_several(request, "state", STATES),
         severities=[int(text) for text in _several(request, "severity", SEVERITIES)],
         category=asked_choice(request, "category", list(BY_CODE)),
-        asset=None if asset_id is None else asset_or_404(asset_id),
+        asset=None if asset_id is None else get_object_or_404(Asset, pk=asset_id),
         mission=uuid_of(request, "mission"),
         medium=uuid_of(request, "medium"),
         due_before=None if due_before is None else due_before.date(),
@@ -246,12 +246,8 @@ def _several(request: Request, name: str, known: list[str]) -> list[str]:
 
 
 def _finding(request: SignedInRequest, finding_id: UUID) -> Finding:
-    found = (
-        findings_of_organisation(request.user.organisation_id).select_related("organisation", "created_by").filter(pk=finding_id).first()
-    )
-    if found is None:
-        raise Http404
-    return found
+    findings = findings_of_organisation(request.user.organisation_id).select_related("organisation", "created_by")
+    return get_object_or_404(findings, pk=finding_id)
 
 
 def _medium(request: SignedInRequest, medium_id: UUID) -> Medium:

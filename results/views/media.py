@@ -4,6 +4,7 @@ from typing import Any
 from uuid import UUID
 
 from django.http import FileResponse, Http404
+from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
@@ -11,6 +12,7 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from inspection.models import Asset
 from inspection.selectors import asset_label
 from inspection.views.parameters import invalid
 from results.media_metadata.media_types import MEDIA_TYPES, name_with_suffix
@@ -21,7 +23,7 @@ from results.services.media import IsEvidence, delete_medium, review_medium
 from results.services.placing import assign_medium
 from results.services.store import MediumMissing, derivative_name, open_stored, original_name
 from results.services.uploads import known_media, media_use
-from results.views.subjects import asset_or_404, subject_of
+from results.views.subjects import subject_of
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import asked_choice, page_of
 from workspace.api.permissions import EVERYBODY
@@ -156,12 +158,8 @@ class MediumPreview(APIView):
 
 
 def medium_or_404(request: SignedInRequest, medium_id: UUID) -> Medium:
-    medium = (
-        media_of_organisation(request.user.organisation_id).select_related("asset", "target", "organisation").filter(pk=medium_id).first()
-    )
-    if medium is None:
-        raise Http404
-    return medium
+    media = media_of_organisation(request.user.organisation_id).select_related("asset", "target", "organisation")
+    return get_object_or_404(media, pk=medium_id)
 
 
 def media_json(media: list[Medium]) -> list[dict[str, Any]]:
@@ -185,7 +183,7 @@ def _asked(request: Request) -> MediaFilter:
     return MediaFilter(
         mission=uuid_of(request, "mission"),
         target=TARGET.asked(request),
-        asset=None if asset_id is None else asset_or_404(asset_id),
+        asset=None if asset_id is None else get_object_or_404(Asset, pk=asset_id),
         uav=UAV.asked(request),
         kind=asked_choice(request, "kind", MediumKind.values),
         state=asked_choice(request, "state", MediumState.values),

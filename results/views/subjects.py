@@ -3,7 +3,6 @@
 from typing import Any
 from uuid import UUID
 
-from django.http import Http404
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset
@@ -26,13 +25,6 @@ def subject_of(user: User, named: dict[str, Any]) -> Subject:
         target=target,
         asset=_asset(named["asset"]) if named.get("asset") else None,
     )
-
-
-def asset_or_404(asset_id: int) -> Asset:
-    asset = Asset.objects.filter(pk=asset_id).first()
-    if asset is None:
-        raise Http404
-    return asset
 
 
 def _mission(user: User, mission_id: UUID) -> Mission:

@@ -8,7 +8,7 @@ from typing import IO, Any
 from uuid import UUID
 
 from django.conf import settings
-from django.http import Http404
+from django.shortcuts import get_object_or_404
 from django.urls import reverse
 from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
@@ -206,10 +206,7 @@ def upload_problems(upload: MediaUpload | None = None) -> Iterator[None]:
 
 
 def _upload(request: SignedInRequest, media_upload_id: UUID) -> MediaUpload:
-    upload = open_uploads_of_organisation(request.user.organisation_id).filter(pk=media_upload_id).first()
-    if upload is None:
-        raise Http404
-    return upload
+    return get_object_or_404(open_uploads_of_organisation(request.user.organisation_id), pk=media_upload_id)
 
 
 def _offset(upload: MediaUpload) -> dict[str, str]:
