@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.spans import spans_of
 from inspection.selectors.planning import planning_read
-from inspection.services import import_terrain
 from missions.models import Mission, MissionState, Uav, UavType
 from missions.selectors import photo_flights
 from missions.selectors.missions import mission_of_organisation
@@ -24,20 +23,16 @@ from missions.services.approval.checks import reasons_against
 from missions.services.approval.document import approval_document, frozen_route
 from missions.services.commands.flight_progress import mark_waypoint_reached
 from missions.services.planning import planner
-from planning.views.camera import camera_to_json
-from planning.views.catalogue import catalogue
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
-from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import post
+from tests.missions.photo_missions import CAMERA, MASL_M, body, made, tern, terrain
 from tests.missions.worlds import World, power_line, world, zone_around
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db
 
-CAMERA = catalogue()["dji-m30t-zoom"].camera
 VIEWS = {"gsd_mm": 4, "camera_key": "dji-m30t-zoom"}
-MASL_M = 100.0
 
 
 @pytest.fixture(autouse=True)
@@ -57,28 +52,8 @@ def client() -> Client:
     return client_of(a_user(Role.OPERATOR))
 
 
-def terrain(folder: Path, *, origin: tuple[float, float] = (9.9, 56.15)) -> None:
-    import_terrain(path=write_geotiff(folder / "hills.tif", np.full((300, 300), MASL_M, dtype="f4"), srid=9707, origin=origin))
-
-
-def tern(**of_type: Any) -> Uav:
-    kind = UavType.objects.create(name="Tern", cruise_speed_mps=12.0, max_range_m=20_000.0, cameras=[camera_to_json(CAMERA)], **of_type)
-    organisation = Organisation.objects.first()
-    return Uav.objects.create(organisation=organisation, name="Tern", uav_type=kind, location="POINT(10.001 55.995)", is_simulated=True)
-
-
-def body(*targets: dict[str, Any], uav: Uav | None = None) -> dict[str, Any]:
-    return {"name": "Photos", "plan": True, "return_to_start": True, "uavs": [{"id": (uav or tern()).pk}], "targets": list(targets)}
-
-
 def photos_of(asset: Any, **wishes: Any) -> dict[str, Any]:
     return {"asset": asset.pk, "task": {"kind": "photo", "views": VIEWS | wishes}}
-
-
-def made(client: Client, asked: dict[str, Any]) -> dict[str, Any]:
-    response = post(client, "missions", asked)
-    assert response.status_code == 201, response.content
-    return response.json()
 
 
 def photos(plan: dict[str, Any], uav: int = 0) -> list[dict[str, Any]]:

@@ -22,7 +22,7 @@ from simulation.models import RehearsalTrack
 from telemetry.models import Capture
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
-from tests.missions.planning.test_photos import CAMERA, body, made, tern, terrain
+from tests.missions.photo_missions import CAMERA, body, made, tern, terrain
 from tests.missions.worlds import World, world
 from tests.simulation.rehearsals.rehearsed import rehearsed
 from workspace.models import Organisation, Role, User
