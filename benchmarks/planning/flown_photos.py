@@ -57,8 +57,8 @@ def main() -> int:
     ]  # fmt: skip
     print(table(heads, rows))
     if arguments.write:
-        told = f"`python -m benchmarks.planning.flown_photos`: {arguments.camera}, {arguments.gsd:g} mm. {machine('numpy', 'jsbsim')}"
-        write_section(TITLE, f"{told}\n\n{table(heads, rows)}")
+        command = f"`python -m benchmarks.planning.flown_photos`: {arguments.camera}, {arguments.gsd:g} mm. {machine('numpy', 'jsbsim')}"
+        write_section(TITLE, f"{command}\n\n{table(heads, rows)}")
     every = [own for cases in found.values() for own in cases]
     return int(any(own.spare_m < 0.0 or own.taken != own.photos for own in every))
 

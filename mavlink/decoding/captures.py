@@ -1,6 +1,6 @@
 """Photos as vehicles report them: where and when one was taken, where the camera looked, and how well that is known.
 
-Several messages may tell of one photo, and each may come again. Heights have the reference that the message and its sender give them;
+Several messages may report one photo, and each may arrive again. Heights have the reference that the message and its sender give them;
 others are unknown. Read in ArduPilot's AP_Camera_Backend.cpp and PX4's CameraFeedback.cpp, 2026-11.
 """
 
@@ -36,7 +36,7 @@ EARTH_M_PER_DEGREE = 111_195.0
 
 
 class CaptureSource(StrEnum):
-    """What tells of a photo."""
+    """The message that reported a photo."""
 
     IMAGE_CAPTURED = "camera-image-captured"
     COMPANION = "companion"
@@ -116,7 +116,7 @@ _SOURCES = list(CaptureSource)
 
 
 def combined(reports: Sequence[CaptureReport]) -> CaptureReport:
-    """Return what all reports of one photo tell together, in whatever order they came: of each value the best source.
+    """Return one photo from all its reports, in any order: of each value the one of the best source.
 
     Positions that differ widen the bound. A photo that its camera could not take was not taken.
     """
@@ -268,7 +268,7 @@ class CaptureDecoder:
         return self._placed(aimed, message.lat, message.lng, now_s)
 
     def _trigger(self, message: Message, clock: VehicleTime, now_s: float) -> CaptureReport:
-        """CAMERA_TRIGGER: that a camera was told to take a photo, and when."""
+        """CAMERA_TRIGGER: a camera was triggered, and when."""
         component, time_s = message.get_srcComponent(), message.time_usec / 1e6
         is_utc = time_s >= FIRST_DAY_S
         boot_s = None if is_utc or not time_s else time_s
@@ -362,7 +362,7 @@ class CaptureDecoder:
 
     @staticmethod
     def _place_stamp(message: Message) -> str:
-        """Return what tells two photos without a time apart: where they were taken. Empty without a position."""
+        """Return what distinguishes two photos without a time: where they were taken. Empty without a position."""
         longitude = message.lng if message.get_type() == "CAMERA_FEEDBACK" else message.lon
         if not is_place(message.lat, longitude):
             return ""

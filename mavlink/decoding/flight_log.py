@@ -42,7 +42,7 @@ def frames_of_tlog(file: BinaryIO) -> Iterator[tuple[float, bytes]]:
 
 
 def captures_of_tlog(file: BinaryIO) -> Iterator[LoggedCapture]:
-    """Yield what the first vehicle of the log told of photos, as a gateway took it when it was received."""
+    """Yield the reports of photos by the first vehicle of the log, as a gateway stored them on receipt."""
     state: VehicleState | None = None
     clock, photos = VehicleTime(), CaptureDecoder()
     for at_s, raw in frames_of_tlog(file):

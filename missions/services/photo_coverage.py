@@ -107,7 +107,7 @@ def _planned(mission: Mission) -> tuple[dict[int, list[PlannedPhoto]], dict[tupl
 def _over_sea(own: PhotoOfMission, take_off_m: Mapping[tuple[int, int], float]) -> PhotoOfMission:
     """Return the photo with its height above take-off, where it is known, as the height above the sea.
 
-    Routes are flown above take-off; the height above the sea that an autopilot tells has the error of its first fix.
+    Routes are flown above take-off; the height above the sea that an autopilot reports has the error of its first fix.
     """
     ground_m = None if own.uav is None else take_off_m.get((own.uav, own.flight))
     if own.relative_m is None or ground_m is None:
@@ -223,7 +223,7 @@ def _tower(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ProofSurface]
 
 
 def _deviations(planned: Sequence[PlannedPhoto], taken: Sequence[PhotoOfMission]) -> list[Json]:
-    """Return the planned photos that were not taken, or not where or whither they were planned; numbers from 1, as they are planned.
+    """Return the planned photos that were not taken, or with another position or direction than planned; numbered from 1 in planned order.
 
     not_counted: why one that was taken counts for nothing.
     """

@@ -41,8 +41,8 @@ class MissionCoverage(APIView):
         operation_id="list_mission_coverage",
         summary="What photos of a mission show of its towers: promised, rehearsed, achieved",
         description="Of each target with `views`, by component: what the planned photos show, those of a rehearsal with the true poses of "
-        "lenses in each of its conditions, and those that UAVs reported. Photos of which height, position or attitude is unknown are not "
-        f"counted, which is told. {TARGETS_A_PAGE} targets a page unless told, {MAX_TARGETS_A_PAGE} at most.",
+        "lenses in each of its conditions, and those that UAVs reported. Photos of which height, position or attitude is unknown are "
+        f"listed in `not_counted`. {TARGETS_A_PAGE} targets a page by default, {MAX_TARGETS_A_PAGE} at most.",
         parameters=[REHEARSAL, *PAGE_PARAMETERS],
         responses=MissionCoverageSerializer,
     )

@@ -114,7 +114,7 @@ class DetailPlan:
 def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: DetailSpeeds) -> DetailPlan:
     """Plan photos of the site's tower. Raises TooManyPhotos, or NoWay where the flight over the wires would be too high.
 
-    No photo looks steeper down than MIN_PITCH_DEG: UAVs are told where to look by a place, and one right under them has no bearing.
+    No photo looks steeper down than MIN_PITCH_DEG: the camera is aimed at a place, and one right under the UAV has no bearing.
     """
     camera = flown_camera(camera)
     views = detail_views(site.solid, site.keep_out, camera, rules)

@@ -1,7 +1,7 @@
 """What photos of a tower prove, from the poses that they were planned or taken at.
 
 The camera counts as level: gimbals keep the horizon. A photo that states more roll than MAX_ROLL_DEG, whose picture is turned by more than
-its margin, is not counted. No camera tells its focal length for certain: photos count with the one that was planned.
+its margin, is not counted. No camera reports its focal length reliably: photos count with the planned one.
 """
 
 from collections import Counter
@@ -21,7 +21,7 @@ from planning.views.visibility import Poses, RayCaster
 
 MIN_PITCH_DEG = -80.0
 REACH_M = 80.0  # from the asset's axis, of candidate positions
-PROOF_PATCH_M = 1.0  # sides of patches on which coverage is told
+PROOF_PATCH_M = 1.0  # sides of the patches on which coverage is measured
 MAX_AWAY_M = 2.0 * REACH_M  # from the tower's axis: beyond, a photo is of something else, or its position is wrong
 MAX_ROLL_DEG = 3.0  # turns the edge of a picture by as much as the margin within which photos are planned
 MAX_AMSL_M = 10_000.0

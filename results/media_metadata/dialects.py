@@ -48,7 +48,7 @@ def plausible_position(lon: float | None, lat: float | None, source: str) -> Pos
 def heights_of(xmp: Properties) -> tuple[Height, ...]:
     """Return the heights that the makers' own tags state.
 
-    With RTK, DJI's absolute height is above the ellipsoid or the sea, by a setting that the file does not tell (OpenAthenaAndroid #100).
+    With RTK, DJI's absolute height is above the ellipsoid or the sea, by a setting that the file does not state (OpenAthenaAndroid #100).
     """
     heights = []
     for namespace in (DJI, SKYDIO):

@@ -1,8 +1,8 @@
-"""Kinds of files that are taken, told by their first bytes: names and what a browser says do not count."""
+"""The accepted kinds of files, detected from their first bytes; file names and browsers' types are ignored."""
 
 from dataclasses import dataclass
 
-HEAD_BYTES = 32  # enough to tell every kind
+HEAD_BYTES = 32  # enough to detect every kind
 
 
 @dataclass(frozen=True)

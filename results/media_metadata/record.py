@@ -12,13 +12,13 @@ class HeightReference(StrEnum):
     AMSL = "amsl"
     ELLIPSOID = "ellipsoid"  # of WGS 84
     TAKE_OFF = "take_off"
-    UNKNOWN = "unknown"  # AMSL or the ellipsoid: the file does not tell
+    UNKNOWN = "unknown"  # AMSL or the ellipsoid: the file does not state it
 
 
 class TimeSource(StrEnum):
     GPS = "gps"  # UTC of the receiver
     CAMERA = "camera"  # the camera's clock with its offset from UTC
-    LOCAL = "local"  # the camera's clock, whose zone the file does not tell
+    LOCAL = "local"  # the camera's clock, whose zone the file does not state
 
 
 @dataclass(frozen=True)

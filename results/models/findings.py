@@ -100,7 +100,7 @@ class Outcome(models.TextChoices):
 
 
 class Observation(models.Model):
-    """That a later visit looked for a finding on a medium, and saw it or not. Where nobody looked there is no observation."""
+    """A statement that a later medium shows a finding, or does not. Without one, the finding was not looked for."""
 
     finding = models.ForeignKey(Finding, on_delete=models.CASCADE, related_name="observations")
     medium = models.ForeignKey(Medium, on_delete=models.PROTECT, related_name="observations")

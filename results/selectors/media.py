@@ -15,7 +15,7 @@ NOT_REVIEWED = "none"
 
 @dataclass(frozen=True, kw_only=True)
 class MediaFilter:
-    """Conditions of a list; None or empty for any. review: `none` for media that nobody has looked at."""
+    """Conditions of a list; None or empty for any. review: `none` for media that are not reviewed yet."""
 
     mission: UUID | None = None
     target: int | None = None

@@ -10,7 +10,7 @@ from workspace.models import User
 
 
 def review_medium(*, medium: Medium, actor: User, review: str) -> None:
-    """Store that a user has looked at a medium, or, with an empty review, that nobody has."""
+    """Store a user's review of a medium; an empty one takes it back."""
     medium.review = review
     medium.reviewed_at = timezone.now() if review else None
     medium.reviewed_by = actor if review else None

@@ -17,7 +17,7 @@ from workspace.models import User
 
 
 def place_medium(medium: Medium) -> None:
-    """Set target and asset of a medium that nobody has placed; the caller saves it. What is not clear stays unplaced."""
+    """Set target and asset of a medium that was not placed by hand; the caller saves it. Without a clear match it stays unplaced."""
     if medium.placement in (Placement.STATED, Placement.MANUAL):
         if medium.target_id is None and medium.mission_id is not None and medium.asset_id is not None:
             medium.target = _only_target(medium.mission_id, medium.asset_id)

@@ -1,6 +1,6 @@
 """The media store: bytes by organisation and SHA-256, in a folder or wherever the storage of the settings puts them.
 
-Names hold the organisation, so that nobody learns from a hash what others have, and an organisation's files can be counted and removed.
+Names hold the organisation, so that a hash does not reveal what others have, and an organisation's files can be counted and removed.
 """
 
 import shutil

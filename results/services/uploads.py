@@ -207,7 +207,7 @@ def upload_folder() -> Path:
 
 
 def adopt_subject(medium: Medium, subject: Subject) -> None:
-    """Give a medium that belongs to no mission, and that nobody has placed, what it is sent for once more; the worker places it again."""
+    """Give a medium without mission and place the subject of a repeated upload; the worker places it again."""
     is_free = medium.mission_id is None and medium.placement in (Placement.WAITING, Placement.UNPLACED)
     if not is_free or subject == Subject():
         return

@@ -1,7 +1,7 @@
 """MAVLink of a simulated UAV's camera and gimbal, as the firmware of each autopilot type sends it.
 
 Read in ArduPilot's AP_Camera_Backend.cpp and AP_Mount_Backend.cpp and in PX4's streams, 2026-11: on both the camera is a component of its
-own (MAV_COMP_ID_CAMERA) that tells of each photo. ArduPilot adds CAMERA_FEEDBACK, whose angles are those of the vehicle, and sends the
+own (MAV_COMP_ID_CAMERA) that reports each photo. ArduPilot adds CAMERA_FEEDBACK, whose angles are those of the vehicle, and sends the
 gimbal's attitude itself, with a yaw from the nose. PX4 passes on that of a gimbal component, which names its yaw from north.
 """
 

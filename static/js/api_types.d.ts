@@ -7473,7 +7473,7 @@ export interface components {
         };
         /** @description Every photo of the batch is stored, known or refused; none needs to be sent again unchanged. */
         StoredCaptures: {
-            /** @description new ones, also those that another message told of before */
+            /** @description new reports, also of photos that another message reported before */
             stored: number;
             /** @description that had been stored before, under the same stream and sequence */
             known: number;

@@ -360,7 +360,7 @@ class Session:
             listener(message, monotonic_s)
 
     def _note_photo(self, message: Message, now_s: float) -> None:
-        """Queue what a message of any component of the vehicle, such as its camera, tells of a photo."""
+        """Queue the report of a photo from any component of the vehicle, such as its camera."""
         self._missing_photos.receive(message, time.monotonic())
         report = self._photos.receive(message, self.time, self.state.autopilot_type, now_s)
         if report is not None:

@@ -9,7 +9,7 @@ from telemetry.models.records import TelemetryStream
 
 
 class Capture(models.Model):
-    """One photo: what all reports of it tell together (mavlink/decoding/captures.py). Heights name their reference; null is unknown."""
+    """One photo, combined from all its reports (mavlink/decoding/captures.py). Heights name their reference; null is unknown."""
 
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="captures", db_index=False)
     mission = models.ForeignKey(Mission, on_delete=models.SET_NULL, null=True, blank=True, related_name="captures", db_index=False)

@@ -126,7 +126,7 @@ class StoredReportsSerializer(serializers.Serializer):
 class StoredCapturesSerializer(serializers.Serializer):
     """Every photo of the batch is stored, known or refused; none needs to be sent again unchanged."""
 
-    stored = serializers.IntegerField(help_text="new ones, also those that another message told of before")
+    stored = serializers.IntegerField(help_text="new reports, also of photos that another message reported before")
     known = serializers.IntegerField(help_text="that had been stored before, under the same stream and sequence")
     refused = RefusedSerializer(many=True)
 

@@ -1,4 +1,4 @@
-"""Stores photos: each once, from whatever messages tell of it, in whatever order and however often they come."""
+"""Stores photos, each once, from all messages that report it, in any order and with repetitions."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from telemetry.services.waypoints import LoadedList, lists_on
 from workspace.leases import lock_until_end
 
 CAPTURES_LOCK = 0x05A7_0033  # advisory lock, with the UAV
-SAME_PHOTO_S = 1.0  # between two messages of different kinds that tell of one photo
-LATE_S = 2.0  # a photo that is told later was asked for again, or held back
+SAME_PHOTO_S = 1.0  # between two messages of different kinds about one photo
+LATE_S = 2.0  # a photo that is reported later was requested again, or delayed
 SAME_RECEIPT_S = 10.0  # between receiving a message and reading it in the log of the flight
 MAX_TIME_S = 253_000_000_000.0  # year 9987, within the range of Python and PostgreSQL
 
@@ -93,7 +93,7 @@ def _not_stored(new: Sequence[NewCapture], streams: Mapping[tuple[int, str, str]
 
 
 def _same_photo(new: NewCapture) -> Capture | None:
-    """Return the stored photo that this report tells of: the nearest in time that no message of this kind has told of."""
+    """Return the stored photo of this report: the nearest in time without a message of this kind."""
     taken_at, reach = _time(new.report.taken_s), timedelta(seconds=SAME_PHOTO_S)
     near = Capture.objects.filter(uav=new.uav_id, taken_at__gte=taken_at - reach, taken_at__lte=taken_at + reach)
     free = near.exclude(reports__source=new.report.source)

@@ -22,7 +22,7 @@ from missions.models import Approval
 from missions.services.commands.dispatch import DamagedApproval, approved_load
 
 E7, M_PER_DEGREE = 1e7, 111_195.0
-NEAR_ITEMS = 8  # between the item that a vehicle tells of and the one that takes the photo
+NEAR_ITEMS = 8  # between the item that a vehicle reports and the one that takes the photo
 
 
 class PhotoItem(NamedTuple):
@@ -67,8 +67,8 @@ class LoadedList:
     def waypoint_of_photo(self, item: int | None, position: LonLat | None, height_m: float | None, *, is_late: bool = False) -> int | None:
         """Return the waypoint that a photo belongs to while the vehicle's list was at this item.
 
-        A vehicle tells of its item once a second, and may go on to the next as it takes the photo: of the items near by that take photos
-        the nearest in space counts. is_late: told later, with the list at any item by then.
+        A vehicle reports its item once a second, and may go on to the next as it takes the photo: of the nearby items that take photos
+        the nearest in space counts. is_late: reported later, with the list at any item by then.
         """
         if item is None or position is None:
             return self.waypoint_of(item)

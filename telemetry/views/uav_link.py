@@ -141,7 +141,7 @@ class UavCaptures(UavView):
         operation_id="report_captures",
         summary="Report photos: where and when they were taken, and where the camera looked",
         description=(
-            "Taken and numbered like telemetry, in streams of their own. A photo that autopilot or camera told of by MAVLink within "
+            "Taken and numbered like telemetry, in streams of their own. A photo that the autopilot or camera reported by MAVLink within "
             "a second is the same one."
         ),
         request=LinkCapturesSerializer,

@@ -60,7 +60,7 @@ async function go(step) {
   await show(wanted);
 }
 
-/** To the next photo that nobody has looked at, else to the next one. */
+/** To the next photo that is not reviewed yet, else to the next one. */
 async function goOn() {
   const open = media.findIndex((one, index) => index > place && !one.review && one.state === "ready");
   await (open > place ? show(open) : go(1));

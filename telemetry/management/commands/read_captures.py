@@ -10,7 +10,7 @@ from telemetry.services.log_captures import store_captures_of_log
 
 
 class Command(BaseCommand):
-    help = "Stores the photos that the logs of flights tell of and that are not stored. May run again at any time."
+    help = "Stores the photos that flight logs report and that are not stored yet. May run again at any time."
 
     def add_arguments(self, parser: ArgumentParser) -> None:
         parser.add_argument("--uav", type=int, help="id of a UAV; all without it")
