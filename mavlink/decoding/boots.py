@@ -14,6 +14,7 @@ SAME_EPOCH_S = 5.0
 REBOOT_SLACK_S = 2.0
 FIRST_DAY_S = 1_420_070_400.0  # 2015: an earlier time of day means a clock that was never set
 BOOTS_KEPT = 3
+NO_BOOT = "boot-unknown"
 LEAP_S = 10.0
 LEAPS_BELIEVED = 5  # in a row
 
@@ -48,6 +49,11 @@ class VehicleTime:
     @property
     def clock(self) -> VehicleClock | None:
         return self.boots[-1].clock if self.boots else None
+
+    @property
+    def stream(self) -> str:
+        """The key of the current boot, NO_BOOT before the vehicle has reported its time."""
+        return self.boots[-1].key if self.boots else NO_BOOT
 
     def receive(self, boot_ms: int, now_s: float, *, unix_s: float | None = None) -> Stamp:
         """Return the stamp of a message.

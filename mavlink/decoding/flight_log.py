@@ -14,7 +14,6 @@ from mavlink.vehicle_state import VehicleState
 
 TIME_BYTES, CHECKSUM_BYTES = 8, 2
 SEND_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
-NO_BOOT = "boot-unknown"  # of a photo before the vehicle has told its time
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +57,7 @@ def captures_of_tlog(file: BinaryIO) -> Iterator[LoggedCapture]:
             state.receive(message, at_s)
             report = photos.receive(message, clock, state.autopilot_type, at_s)
             if report is not None:
-                yield LoggedCapture(at_s, clock.boots[-1].key if clock.boots else NO_BOOT, report, state.mission_item)
+                yield LoggedCapture(at_s, clock.stream, report, state.mission_item)
 
 
 def _note_time(clock: VehicleTime, frame: Frame, message: Message, at_s: float) -> None:

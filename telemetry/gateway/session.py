@@ -47,7 +47,6 @@ LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 SEND_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
-NO_BOOT = "boot-unknown"  # a photo before the vehicle has told its time
 ADDRESS_GOOD_S = 3_600.0  # longer than any flight: after this silence an address may belong to another host
 Listener = Callable[[Message, float], None]
 
@@ -368,7 +367,7 @@ class Session:
                 NewCapture(
                     uav_id=self.uav.uav_id,
                     link=LinkKind.MAVLINK,
-                    stream=self.time.boots[-1].key if self.time.boots else NO_BOOT,
+                    stream=self.time.stream,
                     received_at=datetime.fromtimestamp(now_s, UTC),
                     report=report,
                     mission_item=self.state.mission_item,
@@ -390,9 +389,9 @@ class Session:
     def _stamp(self, message: Message, now_s: float) -> Stamp:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None
         if self.time.boots:
-            self.lists.check_boot(self.time.boots[-1].key, time.monotonic())
+            self.lists.check_boot(self.time.stream, time.monotonic())
         stamp = self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
-        self.lists.check_boot(self.time.boots[-1].key, time.monotonic())
+        self.lists.check_boot(self.time.stream, time.monotonic())
         return stamp
 
     def _record(self, message: Message, stamp: Stamp, now_s: float) -> None:
