@@ -1,1 +1,1 @@
-"""Places photos at the targets of a mission."""
+"""Matches photos with captures and targets."""

@@ -3,15 +3,19 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 from typing import Any
 from uuid import UUID
 
+from django.conf import settings
 from django.contrib.gis.geos import Point
 from django.db import transaction
 
 from inspection.geodesy import LonLat
 from mavlink.decoding import captures as decoded
-from telemetry.models import Capture, CaptureReport
+from mavlink.decoding.flight_log import captures_of_tlog
+from missions.models import LinkKind
+from telemetry.models import Capture, CaptureReport, FlightLog
 from telemetry.services.ingest import known_with_missions, stream_ids
 from telemetry.services.waypoints import LoadedList, lists_on
 from workspace.leases import lock_until_end
@@ -19,6 +23,7 @@ from workspace.leases import lock_until_end
 CAPTURES_LOCK = 0x05A7_0033  # advisory lock, with the UAV
 SAME_PHOTO_S = 1.0  # between two messages of different kinds about one photo
 LATE_S = 2.0  # a photo that is reported later was requested again, or delayed
+LOG_REPORTS_AT_ONCE = 500
 SAME_RECEIPT_S = 10.0  # between receiving a message and reading it in the log of the flight
 MAX_TIME_S = 253_000_000_000.0  # year 9987, within the range of Python and PostgreSQL
 
@@ -74,6 +79,28 @@ def store_captures(new: Sequence[NewCapture], *, of_present_mission: bool = True
         if known is not None:
             _combine(known)
     return CaptureCount(photos, joined, len(new) - photos - joined)
+
+
+def store_captures_of_log(log: FlightLog) -> CaptureCount:
+    """Store the photos of a flight log; those that are stored are left as they are. Raises OSError without the file."""
+    with (Path(settings.FLIGHT_LOG_DIR) / log.path).open("rb") as file:
+        new = [
+            NewCapture(
+                uav_id=log.uav_id,
+                link=LinkKind.MAVLINK,
+                stream=found.stream,
+                received_at=datetime.fromtimestamp(found.received_s, UTC),
+                report=found.report,
+                mission_item=found.mission_item,
+                mission_id=log.mission_id,
+            )
+            for found in captures_of_tlog(file)
+        ]
+    counts = [
+        store_captures(new[start : start + LOG_REPORTS_AT_ONCE], of_present_mission=False)
+        for start in range(0, len(new), LOG_REPORTS_AT_ONCE)
+    ]
+    return CaptureCount(sum(one.photos for one in counts), sum(one.joined for one in counts), sum(one.known for one in counts))
 
 
 def _not_stored(new: Sequence[NewCapture], streams: Mapping[tuple[int, str, str], int]) -> list[NewCapture]:

@@ -9,8 +9,7 @@ from django.contrib.gis.geos import Point
 from django.test import Client
 
 from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint
-from results.matching.captures import CapturePlace, capture_of_photo
-from results.matching.nearest import PhotoPlace, TargetPlace, place_photo
+from results.matching.photos import CapturePlace, TargetPlace, capture_of_photo, place_photo
 from results.models import Placement
 from results.services.reading import read_waiting
 from telemetry.models import Capture
@@ -50,7 +49,7 @@ def point(key: int, east_m: float, visit_s: tuple[float, float] | None = None) -
 def test_only_a_clear_target_is_chosen(
     targets: list[TargetPlace], taken_s: float | None, chosen: int | None, candidates: list[int]
 ) -> None:
-    placing = place_photo(PhotoPlace(0.0, 0.0, taken_s), targets)
+    placing = place_photo(taken_s, targets)
     assert (placing.chosen, [one.key for one in placing.candidates]) == (chosen, candidates)
 
 

@@ -1,9 +1,11 @@
-/** What inspects an asset: its missions, of a line its towers and spans, and the way to a new mission. */
+/** Inspections of an asset: its missions, of a line its towers and spans, photos, findings, and the way to a new mission. */
 
 import { ApiError, freshKey, get, post } from "../api.js";
 import { h, icon, setChildren, term } from "../dom.js";
 import { STATES } from "../missions/rows.js";
 import { toast } from "../page/toast.js";
+import { mountFindings } from "../photos/findings_list.js";
+import { mountPhotos } from "../photos/section.js";
 import { t, tn } from "../text.js";
 import { dateText, lengthText, numberText } from "../units.js";
 
@@ -141,5 +143,25 @@ function missionRow(mission) {
     {},
     h("a", { href: isEnded ? `/missions/${id}/report` : `/missions/${id}`, translate: "no" }, name),
     h("span", { class: "caption" }, facts.filter(Boolean).join(" · ")),
+  );
+}
+
+/**
+ * Photos of an asset through time, and findings.
+ *
+ * @param {AssetDetailFeature} feature @param {{ canPlan: boolean }} page
+ */
+export function resultsPart({ id }, { canPlan }) {
+  const findings = h("div", {}, h("div", { class: "skeleton" }));
+  const photos = h("div", {});
+  mountFindings(findings, `asset=${id}`);
+  mountPhotos(photos, { query: `asset=${id}`, stated: { asset: id }, canUpload: canPlan });
+  return h(
+    "div",
+    {},
+    h("h3", {}, icon("triangle-alert", "small"), t("Findings")),
+    findings,
+    h("h3", {}, icon("camera", "small"), t("Photos")),
+    photos,
   );
 }

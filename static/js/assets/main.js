@@ -4,14 +4,13 @@ import { byId, find, h, segments, term } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { countsText } from "../map/look/region_words.js";
 import { readPage } from "../page/chrome.js";
-import { resultsPart } from "../photos/asset_part.js";
 import { t, tn } from "../text.js";
 import { coordinateText, dateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
 import { closeViewPlan, viewPlanPart } from "../view_plan/panel.js";
 import { editMarked } from "./bulk_edit.js";
 import { mountFilters } from "./filters.js";
 import { assetForm } from "./form.js";
-import { inspectionsPart, planButton, planInspection } from "./inspections.js";
+import { inspectionsPart, planButton, planInspection, resultsPart } from "./inspections.js";
 
 /** @import { AssetCounts, AssetDetailFeature, AssetDetailProperties, AssetFeature } from "../api_types.d.ts" */
 /** @import { ShapeKind } from "../draw/types.d.ts" */

@@ -5,7 +5,6 @@ import { h, icon, setChildren } from "../dom.js";
 import { announce } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { durationText, numberText, percentText, whenText } from "../units.js";
-import { filesOfDrop } from "./dropped_files.js";
 import { UploadQueue } from "./upload_queue.js";
 import { PLACEMENTS } from "./words.js";
 
@@ -17,6 +16,7 @@ const READING_MS = 3_000; // between looks while photos are read
 const TYPES =
   "image/jpeg,image/png,image/tiff,image/webp,image/heic,video/mp4,video/quicktime,.dng,.heic,.jpg,.jpeg,.tif,.tiff,.mp4,.mov";
 const MAX_NAMED = 5;
+const HIDDEN = /^\.|^Thumbs\.db$/i;
 
 /**
  * Fill an element with the photos of a mission or an asset.
@@ -215,4 +215,31 @@ function listenToDrops(area, take) {
     event.preventDefault();
     take(await filesOfDrop(event.dataTransfer));
   });
+}
+
+/** @param {DataTransfer} dropped with files or folders @returns {Promise<File[]>} in the order of their paths */
+async function filesOfDrop(dropped) {
+  // Entries must be taken before the first wait: the list is empty afterwards.
+  const entries = [...dropped.items].map((item) => item.webkitGetAsEntry?.() ?? null);
+  if (entries.some((entry) => entry === null)) return [...dropped.files];
+  const found = await Promise.all(entries.map((entry) => filesIn(/** @type {FileSystemEntry} */ (entry))));
+  return found.flat();
+}
+
+/** @param {FileSystemEntry} entry @returns {Promise<File[]>} */
+async function filesIn(entry) {
+  if (HIDDEN.test(entry.name)) return [];
+  if (entry.isFile)
+    return [await new Promise((resolve, reject) => /** @type {FileSystemFileEntry} */ (entry).file(resolve, reject))];
+  const reader = /** @type {FileSystemDirectoryEntry} */ (entry).createReader();
+  /** @type {FileSystemEntry[]} */
+  const inside = [];
+  for (;;) {
+    /** @type {FileSystemEntry[]} a part of them: browsers return 100 at a time */
+    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (!some.length) break;
+    inside.push(...some);
+  }
+  inside.sort((one, other) => one.name.localeCompare(other.name));
+  return (await Promise.all(inside.map(filesIn))).flat();
 }

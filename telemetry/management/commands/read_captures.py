@@ -6,7 +6,7 @@ from typing import Any
 from django.core.management.base import BaseCommand
 
 from telemetry.models import FlightLog
-from telemetry.services.log_captures import store_captures_of_log
+from telemetry.services.captures import store_captures_of_log
 
 
 class Command(BaseCommand):
