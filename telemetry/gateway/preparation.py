@@ -15,6 +15,7 @@ from mavlink.autopilot_type import RESTARTS, AutopilotType, Mode
 from mavlink.commands.actions import ITEM, SPEED_MPS, Order
 from mavlink.commands.leg import BesideLeg, beside_leg, beside_place
 from mavlink.intermediate_waypoints import FLOWN
+from mavlink.mission_sync.supported_items import PHOTO_RADIUS_M
 from mavlink.vehicle_plan import FlightLoad
 from mavlink.vehicle_state import VehicleState
 from missions.command_rules import ALONG_ROUTE
@@ -22,7 +23,6 @@ from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
 from operation.reasons import Reason, text_reason
-from planning.views.photo_flight import SPEED_MPS as PHOTO_SPEED_MPS
 from telemetry.services.links.onboard_lists import LoadedLists, loaded_on
 from telemetry.services.returns.along_route import OnBoard, along_route, held_flight
 
@@ -257,14 +257,12 @@ def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s
 
 
 def _allowed_m(load: FlightLoad, item: int) -> tuple[float, float]:
-    """Return how far beside and above the leg to an item a UAV may be that flies straight to it; beside wires it must be on the leg.
+    """Return how far beside and above the leg to an item a UAV may be that flies straight to it [m, m].
 
-    Legs beside wires are those at the speed of photo flights, in a list with numbered photos.
+    A leg beside wires ends at a waypoint with the radius of photo flights.
     """
-    until = load.mission[: item + 1]
-    speeds = [own.parameters[1] for own in until if own.command == mavlink.MAV_CMD_DO_CHANGE_SPEED]
-    takes_photos = any(own.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE and own.parameters[3] > 0.0 for own in load.mission)
-    if takes_photos and speeds and speeds[-1] <= PHOTO_SPEED_MPS:
+    end = next((own for own in load.mission[item:] if own.command in FLOWN), None)
+    if end is not None and end.command == mavlink.MAV_CMD_NAV_WAYPOINT and end.parameters[1] == PHOTO_RADIUS_M:
         return PHOTO_LEG_M, PHOTO_LEG_M
     return settings.RESUME_DISTANCE_M, settings.TAKE_OFF_HEIGHT_M
 

@@ -1,6 +1,7 @@
 """A route that is begun in the air: with which item, by which commands, and never where nobody has looked."""
 
 import time
+from dataclasses import replace
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -9,6 +10,7 @@ from inspection.geodesy import LonLat
 from mavlink.approved_route import TakeOff
 from mavlink.autopilot_type import RESTARTS, AutopilotType
 from mavlink.commands.actions import ITEM, Order, plan_of
+from mavlink.mission_sync.supported_items import PHOTO_RADIUS_M
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
 from telemetry.gateway.preparation import CannotCarry, DeliveryTask, as_begun, reason_not_to
@@ -17,8 +19,8 @@ HOME = LonLat(10.0, 56.0)
 HELD = {AutopilotType.PX4: 4 << 16 | 3 << 24, AutopilotType.ARDUPILOT: 17}
 
 
-def item(lon: float, waypoint: int, lat: float = 56.01) -> MissionItem:
-    return MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, 6, (0.0, 0.0, 0.0, 0.0), round(lon * 1e7), round(lat * 1e7), 60.0, waypoint)
+def item(lon: float, waypoint: int, lat: float = 56.01, radius_m: float = 0.0) -> MissionItem:
+    return MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, 6, (0.0, radius_m, 0.0, 0.0), round(lon * 1e7), round(lat * 1e7), 60.0, waypoint)
 
 
 #  10.00 ---- 10.01 ---- 10.02   then away to the north
@@ -87,3 +89,33 @@ def test_one_whose_home_is_elsewhere_counts_its_heights_from_there():
     state = held(AutopilotType.PX4, LonLat(10.004, 56.01), home=LonLat(10.05, 56.0))
     reason = reason_not_to(task(), state, time.monotonic())
     assert reason is not None and reason.code == "home-elsewhere"
+
+
+# Legs beside wires: the leg to waypoint 2 is that of a photo flight.
+
+PHOTOS = FlightLoad((item(10.0, 0), item(10.01, 1), item(10.02, 2, radius_m=PHOTO_RADIUS_M), item(10.02, 3, 56.02)))
+METRE_OF_LATITUDE = 1.0 / 111_000.0
+
+
+@pytest.mark.parametrize("autopilot_type", HELD)
+@pytest.mark.parametrize(
+    ("lon", "beside_m", "above_m", "is_refused"),
+    [(10.015, 5.0, 0.0, True), (10.015, 1.0, 0.0, False), (10.015, 0.0, 4.0, True), (10.015, 0.0, -1.0, False), (10.005, 5.0, 4.0, False)],
+)
+def test_a_leg_beside_wires_is_begun_on_it_alone(autopilot_type, lon, beside_m, above_m, is_refused):
+    state = held(autopilot_type, LonLat(lon, 56.01 + beside_m * METRE_OF_LATITUDE), 60.0 + above_m)
+    reason = reason_not_to(replace(task(), onboard=PHOTOS), state, time.monotonic())
+    assert (None if reason is None else reason.code) == ("off-route" if is_refused else None)
+
+
+@pytest.mark.parametrize(
+    ("item_flown", "beside_m", "above_m", "code"),
+    [(2, 5.0, 0.0, "off-route"), (2, 1.0, 0.0, None), (2, 0.0, -4.0, "off-height"), (1, 5.0, 4.0, None)],
+)
+def test_a_leg_beside_wires_is_resumed_on_it_alone(item_flown, beside_m, above_m, code):
+    lon = {1: 10.005, 2: 10.015}[item_flown]
+    place = LonLat(lon, 56.01 + beside_m * METRE_OF_LATITUDE)
+    state = held(AutopilotType.PX4, place, 60.0 + above_m, mission_item=item_flown, mission_item_at_s=time.monotonic())
+    resume = DeliveryTask(order=Order.RESUME, onboard=PHOTOS, take_off=TakeOff(HOME, 100.0))
+    reason = reason_not_to(resume, state, time.monotonic())
+    assert (None if reason is None else reason.code) == code
