@@ -82,15 +82,18 @@ def _gain(photos: _Photos, left: FloatArray, missing: FloatArray, needed: FloatA
 
 def _without_spare(photos: _Photos, area: FloatArray, needed: FloatArray, chosen: list[int]) -> IntArray:
     """Drop photos that are not needed, the first ones first."""
-    for photo in list(chosen):
-        others = [other for other in chosen if other != photo]
-        if others and _is_enough(photos.shows[others], area, needed):
-            chosen = others
-    return np.array(chosen, dtype=np.int64)
-
-
-def _is_enough(shows: BoolArray, area: FloatArray, needed: FloatArray) -> bool:
-    return bool((area[np.asarray(shows.any(axis=0))].sum(axis=0) >= needed - SAME).all())
+    times = photos.shows[chosen].sum(axis=0)
+    spare = area[times > 0].sum(axis=0) - needed + SAME
+    kept = []
+    for photo in chosen:
+        own = photos.shows[photo]
+        lost = area[own & (times == 1)].sum(axis=0)
+        if (lost > spare).any():
+            kept.append(photo)
+            continue
+        spare -= lost
+        times -= own
+    return np.array(kept, dtype=np.int64)
 
 
 def _rows(shows: csr_array, area: FloatArray) -> csr_array:

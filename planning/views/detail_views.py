@@ -59,7 +59,7 @@ class DetailViews:
 def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailRules) -> DetailViews:
     """Return the fewest photos found that show the solid, which stands at the origin of its frame.
 
-    Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance.
+    Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance, or too much of it hides.
     """
     caster = RayCaster([solid])
     farthest_m = reach_m(camera, rules.asked_gsd_m)
@@ -84,6 +84,8 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
         return DetailViews(photos, lens, patches, shows, limits, 0)
     kind = np.array([list(Component).index(kind) for kind, _ in solid.components])[patches.component]
     cover = fewest_photos(shows, patches.area_m2, kind, rules.share)
+    if len(cover.chosen) > MAX_PHOTOS:
+        raise TooManyPhotos
     return DetailViews(photos.only(cover.chosen), lens, patches, shows[cover.chosen], limits, cover.bound, len(photos))
 
 

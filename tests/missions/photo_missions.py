@@ -1,21 +1,38 @@
 """Missions that photograph every part of towers: a camera, a UAV with it, terrain, and requests for missions."""
 
+import pickle
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from django.test import Client
 
 from inspection.services import import_terrain
 from missions.models import Uav, UavType
+from missions.selectors import photo_flights
 from planning.views.camera import camera_to_json
 from planning.views.catalogue import catalogue
+from planning.views.detail_views import DetailPlan, detail_plan
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import post
 from workspace.models import Organisation
 
 CAMERA = catalogue()["dji-m30t-zoom"].camera
 MASL_M = 100.0
+_plans: dict[bytes, DetailPlan] = {}
+
+
+def plan_photos_once(patch: pytest.MonkeyPatch) -> None:
+    """Until the patch is undone, plan photos of the same site with the same camera once for all tests of this process."""
+
+    def planned(*values: Any) -> DetailPlan:
+        key = pickle.dumps(values)
+        if key not in _plans:
+            _plans[key] = detail_plan(*values)
+        return _plans[key]
+
+    patch.setattr(photo_flights, "detail_plan", planned)
 
 
 def terrain(folder: Path, *, origin: tuple[float, float] = (9.9, 56.15)) -> None:

@@ -26,7 +26,7 @@ from missions.services.planning import planner
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import post
-from tests.missions.photo_missions import CAMERA, MASL_M, body, made, tern, terrain
+from tests.missions.photo_missions import CAMERA, MASL_M, body, made, plan_photos_once, tern, terrain
 from tests.missions.worlds import World, power_line, world, zone_around
 from workspace.models import Organisation, Role
 
@@ -36,8 +36,9 @@ VIEWS = {"gsd_mm": 4, "camera_key": "dji-m30t-zoom"}
 
 
 @pytest.fixture(autouse=True)
-def _nothing_kept() -> None:
+def _nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     cache.clear()
+    plan_photos_once(monkeypatch)
 
 
 @pytest.fixture

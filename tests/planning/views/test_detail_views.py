@@ -114,13 +114,22 @@ def test_a_flight_that_would_lead_above_the_limit_is_refused() -> None:
         view_flight(views.poses, stands.keep_out, np.array([0.0, 0.0, 130.0]))
 
 
-def test_hostile_cameras_are_refused_at_once() -> None:
+def test_hostile_cameras_are_refused_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     stands = standing(TOWERS["lattice, 380 kV, barrel"])
     tiny = Camera("tiny", 6.4, 4.8, 320, 240, (400.0,))
     with pytest.raises(TooManyPhotos):
         detail_views(stands.solid, stands.keep_out, tiny, DetailRules(0.002))
     narrow = Camera("narrow", 6.4, 4.8, 8000, 6000, (500.0,))
+    monkeypatch.setattr("planning.views.detail_views.MAX_PHOTOS", 1_000)
     assert detail_views(stands.solid, stands.keep_out, narrow, DetailRules(0.1)).candidates <= MAX_CANDIDATES + 1_000
+
+
+def test_more_photos_than_the_limit_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    tower, camera, gsd_m = CASES[4]
+    needed, stands = len(planned(tower, camera, gsd_m).poses), standing(TOWERS[tower])
+    monkeypatch.setattr("planning.views.detail_views.MAX_PHOTOS", needed - 1)
+    with pytest.raises(TooManyPhotos):
+        detail_views(stands.solid, stands.keep_out, camera, DetailRules(gsd_m))
 
 
 @pytest.mark.parametrize(("tower", "camera", "gsd_m", "patch_m"), [(*CASES[1], 0.25), (*CASES[4], 0.08)], ids=["lattice", "pole"])

@@ -22,7 +22,7 @@ from simulation.models import RehearsalTrack
 from telemetry.models import Capture
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
-from tests.missions.photo_missions import CAMERA, body, made, tern, terrain
+from tests.missions.photo_missions import CAMERA, body, made, plan_photos_once, tern, terrain
 from tests.missions.worlds import World, world
 from tests.simulation.rehearsals.rehearsed import rehearsed
 from workspace.models import Organisation, Role, User
@@ -35,8 +35,9 @@ NOW = datetime(2026, 11, 29, 12, tzinfo=UTC)
 
 
 @pytest.fixture(autouse=True)
-def _nothing_kept() -> None:
+def _nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     cache.clear()
+    plan_photos_once(monkeypatch)
 
 
 @pytest.fixture
