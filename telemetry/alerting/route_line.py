@@ -11,7 +11,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from mavlink.approved_route import HOVER, Flight
+from mavlink.approved_route import HOVER, Flight, photo_clearances_m
 
 NEAR_VERTEX_M = 15.0  # an autopilot accepts a waypoint before it is reached, and climbs or descends near it
 LEGS_BACK, LEGS_ON = 2, 1  # search range around the leg to the reported waypoint, which may be some seconds old
@@ -37,6 +37,7 @@ class RouteLine:
     """A flight from its first waypoint to its last, in a flat frame: lengths are within 1 % over some 20 km.
 
     vertices (east, north) [m], along_m, heights_m above this flight's take-off, hold_s and sequences have one entry for each waypoint.
+    clearances_m: what the flight keeps from wires and supports [m], by its legs through photos.
     """
 
     def __init__(self, flight: Flight, charging: tuple[int, ...] = ()) -> None:
@@ -51,6 +52,8 @@ class RouteLine:
         self.grounds_m = [waypoint.ground_relative_m for waypoint in waypoints]
         self.hold_s = [0.0 if waypoint.task is None else waypoint.task.hold_s for waypoint in waypoints]
         self.sequences = [waypoint.sequence for waypoint in waypoints]
+        beside_wires = photo_clearances_m(waypoints)
+        self.clearances_m = {place - 1: beside_wires[own] for place, own in enumerate(self.sequences) if own in beside_wires}
         self.charges_at = {place for place, sequence in enumerate(self.sequences) if sequence in charging}
         self.lands = flight.end_action != HOVER
         self.arrival_s = [waypoint.arrival_s for waypoint in waypoints]
@@ -128,6 +131,19 @@ class RouteLine:
                 if vertex in self.charges_at:
                     heights_m.append(self.grounds_m[vertex])
         return min(heights_m), max(heights_m)
+
+    def away_m(self, place: RoutePlace, position: LonLat, height_m: float) -> float:
+        """Return the distance in space from the leg of a place or a neighbour of it [m]. height_m: above this flight's take-off."""
+        here = np.array([*self.east_north(position), height_m])
+        last = max(len(self.vertices) - 2, 0)
+        found = []
+        for leg in range(max(place.leg - 1, 0), min(place.leg + 1, last) + 1):
+            start, end = (np.array([*self.vertices[own], self.heights_m[own]]) for own in (leg, min(leg + 1, len(self.vertices) - 1)))
+            along = end - start
+            square = float(along @ along)
+            share = 0.0 if square == 0.0 else min(max(float((here - start) @ along) / square, 0.0), 1.0)
+            found.append(float(np.linalg.norm(start + share * along - here)))
+        return min(found)
 
     def ground_m(self, place: RoutePlace) -> float:
         """Return the planned ground height at a place, above this flight's take-off."""

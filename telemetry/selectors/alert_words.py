@@ -15,6 +15,7 @@ TEMPLATES = (
     gettext_noop("%(uav)s: no telemetry for %(seconds)s s."),
     gettext_noop("Link to %(uav)s lost: no telemetry for %(seconds)s s."),
     gettext_noop("%(uav)s is %(metres)s m beside its route; %(limit)s m are allowed."),
+    gettext_noop("%(uav)s is %(metres)s m off its route beside wires; %(limit)s m are allowed."),
     gettext_noop("%(uav)s flies %(metres)s m above the height of its route; %(limit)s m are allowed."),
     gettext_noop("%(uav)s flies %(metres)s m below the height of its route; %(limit)s m are allowed."),
     gettext_noop("%(uav)s is in the no-fly zone %(zone)s."),

@@ -18,6 +18,8 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
         return None
     if place.across_m > limits.off_route_critical_m:
         return None  # its leg is unknown
+    if place.leg in model.line.clearances_m:
+        return []  # beside wires: off_route
     low_m, high_m = model.line.heights_at(place)
     height_m = fresh.measurement.altitude_relative_m
     off_m = max(height_m - high_m, low_m - height_m)

@@ -21,7 +21,7 @@ from planning.views.visibility import Poses, RayCaster, axes_of
 from simulation.flight.airframe import AIRFRAMES, Settings
 from simulation.flight.events import PhotoTaken
 from simulation.flight.faults import Weather
-from simulation.flight.flown import Ending, fly_mission
+from simulation.flight.flown import Ending, FlownFlightLog, fly_mission
 from simulation.flight.uav import SimulatedUav
 from simulation.rehearsing.weather_scenario import Named, named_scenario
 from tests.planning.views.geometry_oracle import to_triangles_m, to_wires_m
@@ -47,18 +47,7 @@ class Flown(NamedTuple):
 
 def flown(stands: StandingTower, plan: DetailPlan, camera: Camera, code: Named, *, turns_to_target: bool = True) -> Flown:
     """Fly the plan of a tower in a weather; turns_to_target as in Settings. Raises RuntimeError where it is not flown to its end."""
-    route = _route(stands, plan, camera)
-    scenario = named_scenario(code, Conditions())
-    weather = Weather(scenario.conditions, scenario.gusts_mps, turbulence_mps_at_20ft=scenario.turbulence_mps_at_20ft)
-    settings = Settings(turns_to_target=turns_to_target)
-    uav = SimulatedUav(
-        AIRFRAMES["inspector"], route.take_off.position, weather=weather, seed=33, camera=camera, settings=settings
-    )  # fmt: skip
-    if not uav.load(flight_loads(route)[0].mission).is_done:
-        raise RuntimeError("the UAV does not take the items")
-    log = fly_mission(uav)
-    if log.ending is not Ending.LANDED:
-        raise RuntimeError(f"the flight ended {log.ending}")
+    _, log = flight_of(stands, plan, camera, code, turns_to_target=turns_to_target)
     metres = FRAME.to_metres(np.array([[sample.lon, sample.lat] for sample in log.samples]))
     places = np.column_stack([metres, [sample.altitude_relative_m for sample in log.samples]])
     near = places[np.hypot(*metres.T) < AWAY_M / 2.0]
@@ -75,6 +64,25 @@ def flown(stands: StandingTower, plan: DetailPlan, camera: Camera, code: Named, 
         _share(stands, planned, plan, camera),
         _share(stands, poses, plan, camera),
     )
+
+
+def flight_of(
+    stands: StandingTower, plan: DetailPlan, camera: Camera, code: Named, *, turns_to_target: bool = True
+) -> tuple[FrozenRoute, FlownFlightLog]:
+    """Return the route through the photos and the log of its flight. Raises as `flown`."""
+    route = _route(stands, plan, camera)
+    scenario = named_scenario(code, Conditions())
+    weather = Weather(scenario.conditions, scenario.gusts_mps, turbulence_mps_at_20ft=scenario.turbulence_mps_at_20ft)
+    settings = Settings(turns_to_target=turns_to_target)
+    uav = SimulatedUav(
+        AIRFRAMES["inspector"], route.take_off.position, weather=weather, seed=33, camera=camera, settings=settings
+    )  # fmt: skip
+    if not uav.load(flight_loads(route)[0].mission).is_done:
+        raise RuntimeError("the UAV does not take the items")
+    log = fly_mission(uav)
+    if log.ending is not Ending.LANDED:
+        raise RuntimeError(f"the flight ended {log.ending}")
+    return route, log
 
 
 def _route(stands: StandingTower, plan: DetailPlan, camera: Camera) -> FrozenRoute:
