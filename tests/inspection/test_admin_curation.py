@@ -7,6 +7,7 @@ from django.test import Client
 from django.urls import reverse
 from django.utils import timezone
 
+import config.urls  # noqa: F401 - the models are registered when the addresses are read
 from inspection.admin.curated import MAX_CONCURRENT
 from inspection.models import Asset, AssetSet, DataIssue, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services import StaleRevision, save_asset, save_zone
