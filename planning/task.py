@@ -24,13 +24,22 @@ class TaskKind(StrEnum):
 DEFAULT_HOLD_S = {TaskKind.LOOK: 5.0, TaskKind.PHOTO: 10.0, TaskKind.HOLD: 30.0}
 
 
+class ViewPattern(StrEnum):
+    DETAIL = "detail"  # every part, at the ground sample distance
+    OVERVIEW = "overview"  # the whole, from four sides
+
+
+OVERVIEW_GSD_M = 0.05  # what is coarser counts as not shown by an overview
+
+
 @dataclass(frozen=True)
 class ViewsRequest:
-    """Photos of every part of a target, from planned poses. gsd_m: ground sample distance, what a pixel may show at most."""
+    """Photos of a target from planned poses. gsd_m: ground sample distance, what a pixel may show at most."""
 
     gsd_m: float
     camera: Camera
     min_height_m: float = 4.0  # of the UAV above the ground
+    pattern: ViewPattern = ViewPattern.DETAIL
 
 
 @dataclass(frozen=True)
@@ -104,8 +113,11 @@ def task_from_json(value: Mapping[str, Any] | None) -> Task | None:
 
 
 def views_to_json(views: ViewsRequest) -> dict[str, Any]:
-    return {"gsd_mm": round(views.gsd_m * MM_PER_M, 6), "min_height_m": views.min_height_m, "camera": camera_to_json(views.camera)}
+    """Return the request; `pattern` where it is not that of every part, as documents that are older have none."""
+    value = {"gsd_mm": round(views.gsd_m * MM_PER_M, 6), "min_height_m": views.min_height_m, "camera": camera_to_json(views.camera)}
+    return value if views.pattern is ViewPattern.DETAIL else value | {"pattern": views.pattern.value}
 
 
 def views_from_json(value: Mapping[str, Any]) -> ViewsRequest:
-    return ViewsRequest(value["gsd_mm"] / MM_PER_M, camera_from_json(value["camera"]), value["min_height_m"])
+    pattern = ViewPattern(value.get("pattern", ViewPattern.DETAIL))
+    return ViewsRequest(value["gsd_mm"] / MM_PER_M, camera_from_json(value["camera"]), value["min_height_m"], pattern)

@@ -14,8 +14,8 @@ import sys
 
 from benchmarks.report import machine, table, write_section
 from planning.views.catalogue import catalogue
-from planning.views.detail_views import DetailSpeeds, detail_plan
 from planning.views.limits import DetailRules
+from planning.views.view_plan import ViewSpeeds, detail_plan
 from simulation.rehearsing.weather_scenario import Named
 from tests.planning.views.flown_photos import Flown, flown
 from tests.planning.views.towers import TOWERS, standing
@@ -35,7 +35,7 @@ def main() -> int:
     found: dict[Named, list[Flown]] = {code: [] for code in WEATHERS}
     for name in list(TOWERS)[: arguments.towers]:
         stands = standing(TOWERS[name])
-        plan = detail_plan(stands.site, camera, DetailRules(arguments.gsd / 1_000.0), DetailSpeeds())
+        plan = detail_plan(stands.site, camera, DetailRules(arguments.gsd / 1_000.0), ViewSpeeds())
         if not len(plan.poses):
             print(name, "nothing can be shown", flush=True)
             continue

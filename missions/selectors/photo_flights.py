@@ -17,11 +17,12 @@ from missions.selectors.tower_sites import TowerOnMap, tower_on_map
 from operation.reasons import Reason, reason_from_json
 from operation.version import VERSION as PROGRAM_VERSION
 from planning.context import ResolvedTarget
-from planning.task import ViewsRequest, views_to_json
-from planning.views.detail_views import DetailPlan, DetailSpeeds, TooManyPhotos, detail_plan
+from planning.task import ViewPattern, ViewsRequest, views_to_json
+from planning.views.detail_views import TooManyPhotos
 from planning.views.limits import DetailRules
 from planning.views.photo_flight import GroundUnknown, PhotoFlight, photo_flight
 from planning.views.view_flight import NoWay
+from planning.views.view_plan import ViewPlan, ViewSpeeds, detail_plan, overview_plan
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.jobs.planning_lock import hold_planning_lock
 
@@ -36,16 +37,18 @@ class NotATower(Exception):
     """The asset is no support of a line: only these have models yet."""
 
 
-def planned_views(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, DetailPlan]:
+def planned_views(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ViewPlan]:
     """Return the site of a tower and its photos. Raises NotATower, TooManyPhotos or NoWay."""
     found = tower_on_map(asset, views.min_height_m, float(np.linalg.norm(views.camera.offset_m)))
     if found is None:
         raise NotATower
     with hold_planning_lock():
-        return found, detail_plan(found.site, views.camera, DetailRules(views.gsd_m), DetailSpeeds())
+        if views.pattern is ViewPattern.OVERVIEW:
+            return found, overview_plan(found.site, views.camera, views.gsd_m, ViewSpeeds())
+        return found, detail_plan(found.site, views.camera, DetailRules(views.gsd_m), ViewSpeeds())
 
 
-def keep_photo_flight(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: DetailPlan, version: DatasetVersion) -> None:
+def keep_photo_flight(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: ViewPlan, version: DatasetVersion) -> None:
     """Keep the flight of a plan of photos, so that a mission with them is planned at once."""
     _keep(_key(asset.pk, views, version), _flight(found, plan, views))
 
@@ -85,7 +88,7 @@ def _photo_flight(asset: Asset, views: ViewsRequest, version: DatasetVersion) ->
     return flight
 
 
-def _flight(found: TowerOnMap, plan: DetailPlan, views: ViewsRequest) -> PhotoFlight | Reason:
+def _flight(found: TowerOnMap, plan: ViewPlan, views: ViewsRequest) -> PhotoFlight | Reason:
     if found.base_amsl_m is None:
         return Reason("photos_need_terrain")
     if not len(plan.poses):

@@ -7,7 +7,7 @@ from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField
 from missions.serializers.known_fields import KnownFieldsSerializer
-from planning.task import MM_PER_M, ViewsRequest
+from planning.task import MM_PER_M, OVERVIEW_GSD_M, ViewPattern, ViewsRequest
 from planning.views.camera import InvalidCamera, camera_from_json, camera_to_json
 from planning.views.catalogue import CatalogueCamera, catalogue
 from planning.views.limits import LIMITS
@@ -83,14 +83,25 @@ class CameraCatalogueSerializer(serializers.Serializer):
 
 
 class ViewsInputSerializer(KnownFieldsSerializer):
-    """Photos of every part: with which camera, and how fine."""
+    """Photos of every part, or of the whole from four sides: with which camera, and how fine."""
 
+    pattern = serializers.ChoiceField(
+        choices=[own.value for own in ViewPattern], default=ViewPattern.DETAIL.value,
+        help_text="detail: every part; overview: the whole tower in each of four photos",
+    )  # fmt: skip
     camera = CameraSerializer(required=False)
     camera_key = serializers.CharField(required=False, help_text="of the catalogue, in place of `camera`")
-    gsd_mm = BetweenField(GSDS_MM, help_text="ground sample distance: what a pixel shows at most, across the optical axis")
+    gsd_mm = BetweenField(
+        GSDS_MM, required=False,
+        help_text="ground sample distance: what a pixel shows at most, across the optical axis; needed for detail, 50 for an overview",
+    )  # fmt: skip
     min_height_m = BetweenField(HEIGHTS_M, default=4.0, help_text="of the UAV above the ground")
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if "gsd_mm" not in attrs:
+            if attrs["pattern"] != ViewPattern.OVERVIEW:
+                raise serializers.ValidationError({"gsd_mm": [self.fields["gsd_mm"].error_messages["required"]]})
+            attrs = attrs | {"gsd_mm": OVERVIEW_GSD_M * MM_PER_M}
         if ("camera" in attrs) == ("camera_key" in attrs):
             raise serializers.ValidationError({"camera": _("State a camera or a key of the catalogue, and only one of them.")})
         if "camera_key" in attrs:
@@ -102,7 +113,7 @@ class ViewsInputSerializer(KnownFieldsSerializer):
 
 
 def views_request(values: Mapping[str, Any]) -> ViewsRequest:
-    return ViewsRequest(values["gsd_mm"] / MM_PER_M, values["camera"], values["min_height_m"])
+    return ViewsRequest(values["gsd_mm"] / MM_PER_M, values["camera"], values["min_height_m"], ViewPattern(values["pattern"]))
 
 
 class ViewPlanInputSerializer(ViewsInputSerializer):
@@ -110,8 +121,11 @@ class ViewPlanInputSerializer(ViewsInputSerializer):
 
 
 class ViewsSerializer(serializers.Serializer):
-    """Photos of every part of a target."""
+    """Photos of a target."""
 
+    pattern = serializers.ChoiceField(
+        choices=[own.value for own in ViewPattern], required=False, help_text="not there: detail, photos of every part"
+    )
     gsd_mm = serializers.FloatField(help_text="ground sample distance: what a pixel shows at most, across the optical axis")
     min_height_m = serializers.FloatField(help_text="of the UAV above the ground")
     camera = CameraSerializer()
@@ -241,6 +255,9 @@ class ViewPlanZoneSerializer(serializers.Serializer):
 
 class ViewPlanSerializer(serializers.Serializer):
     asset = serializers.IntegerField()
+    pattern = serializers.ChoiceField(
+        choices=[own.value for own in ViewPattern], required=False, help_text="not there: detail, photos of every part"
+    )
     camera = CameraSerializer()
     gsd_mm = serializers.FloatField()
     focal_length_mm = serializers.FloatField(help_text="with which the photos are taken")

@@ -17,9 +17,9 @@ from planning.checks.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.task import MM_PER_M, ViewsRequest, views_to_json
 from planning.views.coverage import ComponentCoverage, Coverage
-from planning.views.detail_views import DetailPlan
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO
+from planning.views.view_plan import ViewPlan
 
 ZONE_STEP_M = 5.0  # between places of the flight whose heights above ground are looked at
 
@@ -35,7 +35,7 @@ def plan_views(*, asset: Asset, views: ViewsRequest) -> dict[str, Any]:
     return _plan_json(asset, views, found, plan)
 
 
-def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: DetailPlan) -> dict[str, Any]:
+def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: ViewPlan) -> dict[str, Any]:
     flight, tower = plan.flight, found.site.tower
     positions = found.frame.to_degrees(flight.position[:, :2])
     agl_m = flight.position[:, 2] - found.ground_m(flight.position[:, :2])

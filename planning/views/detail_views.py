@@ -1,4 +1,4 @@
-"""Photos of every part of an asset at an asked ground sample distance, from outside the clearance, and the flight through them."""
+"""Photos of every part of an asset at an asked ground sample distance, from outside the clearance."""
 
 import math
 from dataclasses import dataclass, field
@@ -9,14 +9,11 @@ from scipy.sparse import csr_array
 
 from planning.views.camera import Camera, Lens, standoff_m
 from planning.views.cover import fewest_photos
-from planning.views.coverage import ComponentCoverage, Coverage, by_component
 from planning.views.keep_out import KeepOut
 from planning.views.limits import DetailRules, Limits, limits_of
-from planning.views.proof import REACH_M, flown_camera, proof_surface, reach_m
-from planning.views.site import TowerSite
+from planning.views.proof import REACH_M, reach_m
 from planning.views.solids import Component, FloatArray, Patches, Solid, patches_of
-from planning.views.view_flight import NO_PHOTO, ViewFlight, view_flight
-from planning.views.visibility import Poses, RayCaster, aim_at, axes_of, in_frame, line_of_sight
+from planning.views.visibility import Poses, RayCaster, aim_at, in_frame, line_of_sight
 
 BoolArray = NDArray[np.bool_]
 
@@ -31,7 +28,6 @@ MAX_PHOTOS, MAX_CANDIDATES = 200, 15_000
 SEED = 33  # of the order in which positions are looked at, where there are too many for all
 MIN_REACHABLE_SHARE = 0.1  # of a surface that can be shown: below, it is looked at on smaller patches
 MIN_SHOWN_SHARE = 0.2  # of what the photo shows that shows the most: below, a photo is weighed only where it alone shows a patch
-ENTRY_ABOVE_M = 2.0  # the keep-out over the tower
 LEVELS, MIN_LEVELS_M, MAX_ABOVE_M = 12, 3.0, 20.0  # of candidate positions: how many, how far apart at least, how far above the asset
 MIN_LENS_SHARE = 0.99  # of what the longest focal length reaches, for a shorter one to do
 
@@ -87,67 +83,6 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
     if len(cover.chosen) > MAX_PHOTOS:
         raise TooManyPhotos
     return DetailViews(photos.only(cover.chosen), lens, patches, shows[cover.chosen], limits, cover.bound, len(photos))
-
-
-@dataclass(frozen=True)
-class DetailSpeeds:
-    """How a UAV flies from photo to photo: m/s along and up or down, and what a stop for a photo or at a bend takes [s]."""
-
-    along_mps: float = 4.0
-    vertical_mps: float = 2.5
-    photo_s: float = 6.5  # slowing down, standing still, the photo, speeding up
-    bend_s: float = 4.5
-
-
-@dataclass(frozen=True, eq=False)
-class DetailPlan:
-    """Photos in the order flown. distance_m: along each optical axis to the tower. bound: see DetailViews. seconds: of the whole flight."""
-
-    poses: Poses
-    distance_m: FloatArray
-    lens: Lens
-    flight: ViewFlight
-    coverage: Coverage
-    components: tuple[ComponentCoverage, ...]
-    bound: int
-    seconds: float
-
-
-def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: DetailSpeeds) -> DetailPlan:
-    """Plan photos of the site's tower. Raises TooManyPhotos, or NoWay where the flight over the wires would be too high.
-
-    No photo looks steeper down than MIN_PITCH_DEG: the camera is aimed at a place, and one right under the UAV has no bearing.
-    """
-    camera = flown_camera(camera)
-    views = detail_views(site.solid, site.keep_out, camera, rules)
-    entry = np.array([0.0, 0.0, site.keep_out.top_at(np.zeros(2)) + ENTRY_ABOVE_M])
-    flight = view_flight(views.poses, site.keep_out, entry, entry)
-    order = flight.photo[flight.photo != NO_PHOTO]
-    poses = views.poses.only(order)
-    renumbered = np.full(len(flight), NO_PHOTO)
-    renumbered[flight.photo != NO_PHOTO] = np.arange(len(order))
-    surface = proof_surface(site, camera, rules.asked_gsd_m)
-    coverage = surface.coverage(poses, views.lens)
-    return DetailPlan(
-        poses, _distance_m(poses, surface.caster), views.lens, ViewFlight(flight.position, renumbered), coverage,
-        by_component(site.solid, coverage), views.bound, _seconds(flight.position, len(poses), speeds),
-    )  # fmt: skip
-
-
-def _distance_m(poses: Poses, caster: RayCaster) -> FloatArray:
-    """To what each photo shows in its middle; as far as the tower's axis where that is none of it."""
-    _, _, forward = axes_of(poses.yaw_deg, poses.pitch_deg)
-    away_m = caster.distance_m(poses.position, forward)
-    beside_m = np.maximum(np.hypot(poses.position[:, 0], poses.position[:, 1]), 1.0)
-    found: FloatArray = np.where(np.isfinite(away_m), away_m, beside_m)
-    return found
-
-
-def _seconds(position: FloatArray, photos: int, speeds: DetailSpeeds) -> float:
-    change = np.abs(np.diff(position, axis=0))
-    along_s = np.hypot(change[:, 0], change[:, 1]) / speeds.along_mps
-    stops_s = photos * speeds.photo_s + (len(position) - photos) * speeds.bend_s
-    return float(np.maximum(along_s, change[:, 2] / speeds.vertical_mps).sum()) + stops_s
 
 
 def candidate_positions(solid: Solid, keep_out: KeepOut, farthest_m: float) -> FloatArray:

@@ -10,9 +10,9 @@ import numpy as np
 from inspection.geodesy.local_frame import LocalFrame
 from planning.task import TURN_S, View
 from planning.views.camera import Gimbal
-from planning.views.detail_views import DetailPlan
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO, SAME_PLACE_M
+from planning.views.view_plan import ViewPlan
 from planning.views.visibility import BoolArray
 
 SPEED_MPS = 4.0  # from photo to photo, beside wires
@@ -63,7 +63,7 @@ class PhotoFlight:
 
 
 def photo_flight(
-    plan: DetailPlan, frame: LocalFrame, base_amsl_m: float, ground_m: Callable[[FloatArray], FloatArray], clearance_m: float,
+    plan: ViewPlan, frame: LocalFrame, base_amsl_m: float, ground_m: Callable[[FloatArray], FloatArray], clearance_m: float,
     gimbal: Gimbal,
 ) -> PhotoFlight:  # fmt: skip
     """Return the flight of a plan whose heights count from the target's foot, base_amsl_m above the sea.

@@ -13,20 +13,20 @@ from missions.models import Uav, UavType
 from missions.selectors import photo_flights
 from planning.views.camera import camera_to_json
 from planning.views.catalogue import catalogue
-from planning.views.detail_views import DetailPlan, detail_plan
+from planning.views.view_plan import ViewPlan, detail_plan
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import post
 from workspace.models import Organisation
 
 CAMERA = catalogue()["dji-m30t-zoom"].camera
 MASL_M = 100.0
-_plans: dict[bytes, DetailPlan] = {}
+_plans: dict[bytes, ViewPlan] = {}
 
 
 def plan_photos_once(patch: pytest.MonkeyPatch) -> None:
     """Until the patch is undone, plan photos of the same site with the same camera once for all tests of this process."""
 
-    def planned(*values: Any) -> DetailPlan:
+    def planned(*values: Any) -> ViewPlan:
         key = pickle.dumps(values)
         if key not in _plans:
             _plans[key] = detail_plan(*values)

@@ -14,9 +14,9 @@ from planning.trajectory.photo_flights import photo_legs_of, with_photo_flights
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from planning.views.camera import Camera
 from planning.views.coverage import coverage_of
-from planning.views.detail_views import DetailPlan
 from planning.views.photo_flight import SPEED_MPS, photo_flight
 from planning.views.solids import patches_of
+from planning.views.view_plan import ViewPlan
 from planning.views.visibility import Poses, RayCaster, axes_of
 from simulation.flight.airframe import AIRFRAMES, Settings
 from simulation.flight.events import PhotoTaken
@@ -45,7 +45,7 @@ class Flown(NamedTuple):
     flown_share: float
 
 
-def flown(stands: StandingTower, plan: DetailPlan, camera: Camera, code: Named, *, turns_to_target: bool = True) -> Flown:
+def flown(stands: StandingTower, plan: ViewPlan, camera: Camera, code: Named, *, turns_to_target: bool = True) -> Flown:
     """Fly the plan of a tower in a weather; turns_to_target as in Settings. Raises RuntimeError where it is not flown to its end."""
     _, log = flight_of(stands, plan, camera, code, turns_to_target=turns_to_target)
     metres = FRAME.to_metres(np.array([[sample.lon, sample.lat] for sample in log.samples]))
@@ -67,7 +67,7 @@ def flown(stands: StandingTower, plan: DetailPlan, camera: Camera, code: Named, 
 
 
 def flight_of(
-    stands: StandingTower, plan: DetailPlan, camera: Camera, code: Named, *, turns_to_target: bool = True
+    stands: StandingTower, plan: ViewPlan, camera: Camera, code: Named, *, turns_to_target: bool = True
 ) -> tuple[FrozenRoute, FlownFlightLog]:
     """Return the route through the photos and the log of its flight. Raises as `flown`."""
     route = _route(stands, plan, camera)
@@ -85,7 +85,7 @@ def flight_of(
     return route, log
 
 
-def _route(stands: StandingTower, plan: DetailPlan, camera: Camera) -> FrozenRoute:
+def _route(stands: StandingTower, plan: ViewPlan, camera: Camera) -> FrozenRoute:
     """From a place beside the line over the tower, through the photos, and back."""
     flight = photo_flight(plan, FRAME, 0.0, lambda places: np.zeros(len(places)), stands.clearance_m, camera.gimbal)
     start, tower = LonLat(*FRAME.to_degrees(np.array([[AWAY_M, 0.0]]))[0].tolist()), LonLat(*FRAME.origin)
@@ -120,7 +120,7 @@ def _angles_deg(one: Poses, other: Poses, count: int) -> np.ndarray:
     return np.degrees(np.arccos(np.clip(np.einsum("ni,ni->n", *axes), -1.0, 1.0)))
 
 
-def _share(stands: StandingTower, poses: Poses, plan: DetailPlan, camera: Camera) -> float:
+def _share(stands: StandingTower, poses: Poses, plan: ViewPlan, camera: Camera) -> float:
     """Of the whole surface, on patches finer than the planner's."""
     patches = patches_of(stands.solid, PATCH_M)
     shown = coverage_of(poses, plan.lens, camera, patches, RayCaster([stands.solid])).shown

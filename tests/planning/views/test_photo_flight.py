@@ -19,11 +19,11 @@ from planning.task import Task, TaskKind, ViewsRequest
 from planning.trajectory.photo_flights import GroundNotKnown, clearances_m, photo_legs_of, with_photo_flights
 from planning.trajectory.timing import timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from planning.views.detail_views import DetailPlan, DetailSpeeds, detail_plan
 from planning.views.limits import DetailRules
 from planning.views.photo_flight import MAX_OFF_M, GroundUnknown, PhotoFlight, photo_flight
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO
+from planning.views.view_plan import ViewPlan, ViewSpeeds, detail_plan
 from tests.planning.views.towers import MIN_HEIGHT_M, SPAN_M, TOWERS, ZOOM, standing
 
 TOWER = "lattice, 110 kV, triangle"
@@ -36,9 +36,9 @@ def level(places: FloatArray) -> FloatArray:
 
 
 @cache
-def planned(slope: float = 0.0) -> DetailPlan:
+def planned(slope: float = 0.0) -> ViewPlan:
     stands = standing(TOWERS[TOWER], ground_m=None if slope == 0.0 else lambda places: slope * places[:, 0])
-    return detail_plan(stands.site, ZOOM, DetailRules(0.004), DetailSpeeds())
+    return detail_plan(stands.site, ZOOM, DetailRules(0.004), ViewSpeeds())
 
 
 def flown(slope: float = 0.0) -> PhotoFlight:

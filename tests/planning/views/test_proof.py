@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from inspection.geodesy.local_frame import LocalFrame
-from planning.views.detail_views import DetailPlan, DetailSpeeds, detail_plan
 from planning.views.limits import DetailRules
 from planning.views.proof import MAX_AWAY_M, NotCounted, ProofSurface, TakenPhoto, flown_camera, proof_surface, why_not_counted
+from planning.views.view_plan import ViewPlan, ViewSpeeds, detail_plan
 from tests.planning.views.towers import TOWERS, ZOOM, standing
 
 TOWER = next(name for name in TOWERS if "lattice" in name)
@@ -20,12 +20,12 @@ THERE = TakenPhoto(10.0, 56.0, BASE_M + 20.0, 90.0, -20.0)
 
 
 @cache
-def planned() -> tuple[DetailPlan, ProofSurface]:
+def planned() -> tuple[ViewPlan, ProofSurface]:
     site = standing(TOWERS[TOWER]).site
-    return detail_plan(site, ZOOM, DetailRules(GSD_M), DetailSpeeds()), proof_surface(site, flown_camera(ZOOM), GSD_M)
+    return detail_plan(site, ZOOM, DetailRules(GSD_M), ViewSpeeds()), proof_surface(site, flown_camera(ZOOM), GSD_M)
 
 
-def photos_of(plan: DetailPlan) -> list[TakenPhoto]:
+def photos_of(plan: ViewPlan) -> list[TakenPhoto]:
     places = FRAME.to_degrees(plan.poses.position[:, :2]).tolist()
     return [
         TakenPhoto(lon, lat, height_m + BASE_M, yaw_deg, pitch_deg)

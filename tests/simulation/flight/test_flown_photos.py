@@ -6,8 +6,8 @@ from functools import cache
 import pytest
 
 from planning.views.camera import Camera, Gimbal
-from planning.views.detail_views import DetailPlan, DetailSpeeds, detail_plan
 from planning.views.limits import DetailRules
+from planning.views.view_plan import ViewPlan, ViewSpeeds, detail_plan
 from simulation.rehearsing.weather_scenario import Named
 from tests.planning.views.flown_photos import flown
 from tests.planning.views.towers import TOWERS, ZOOM, standing
@@ -17,8 +17,8 @@ HALF_A_TURN = Gimbal(-120.0, 45.0, -90.0, 90.0)
 
 
 @cache
-def planned(camera: Camera) -> DetailPlan:
-    return detail_plan(standing(TOWERS[TOWER]).site, camera, DetailRules(0.004), DetailSpeeds())
+def planned(camera: Camera) -> ViewPlan:
+    return detail_plan(standing(TOWERS[TOWER]).site, camera, DetailRules(0.004), ViewSpeeds())
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ import pytest
 from mavlink.approved_route import Flight, FrozenRoute
 from mavlink.decoding.measurement import Measurement
 from mavlink.mission_items import flight_loads
-from planning.views.detail_views import DetailSpeeds, detail_plan
 from planning.views.limits import DetailRules
+from planning.views.view_plan import ViewSpeeds, detail_plan
 from simulation.flight.events import ItemReached
 from simulation.flight.flown import FlownFlightLog
 from simulation.rehearsing.weather_scenario import Named
@@ -31,7 +31,7 @@ TOWER = "lattice, 110 kV, triangle"
 @cache
 def in_strong_wind() -> tuple[FrozenRoute, FlownFlightLog]:
     stands = standing(TOWERS[TOWER])
-    plan = detail_plan(stands.site, ZOOM, DetailRules(0.004), DetailSpeeds())
+    plan = detail_plan(stands.site, ZOOM, DetailRules(0.004), ViewSpeeds())
     return flight_of(stands, plan, ZOOM, Named.STRONG_WIND)
 
 
