@@ -33,6 +33,7 @@ def openapi_settings() -> dict[str, Any]:
             "DataIssueKind": "inspection.models.DataIssueKind",
             "WaypointKind": "missions.models.WaypointKind",
             "TaskKind": ["look", "photo", "hold"],
+            "ViewPattern": ["detail", "overview"],
             "NotCountedReason": ["failed", "position", "height", "attitude", "tilted", "far"],
             "HeightSource": ["tag", "line", "assumed"],
             "DaylightEvent": "inspection.zones.schedule.EVENTS",

@@ -86,8 +86,8 @@ class ViewsInputSerializer(KnownFieldsSerializer):
     """Photos of every part, or of the whole from four sides: with which camera, and how fine."""
 
     pattern = serializers.ChoiceField(
-        choices=[own.value for own in ViewPattern], default=ViewPattern.DETAIL.value,
-        help_text="detail: every part; overview: the whole tower in each of four photos",
+        choices=[own.value for own in ViewPattern], required=False,
+        help_text="detail, which is usual: every part; overview: the whole tower in each of four photos",
     )  # fmt: skip
     camera = CameraSerializer(required=False)
     camera_key = serializers.CharField(required=False, help_text="of the catalogue, in place of `camera`")
@@ -99,7 +99,7 @@ class ViewsInputSerializer(KnownFieldsSerializer):
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if "gsd_mm" not in attrs:
-            if attrs["pattern"] != ViewPattern.OVERVIEW:
+            if attrs.get("pattern") != ViewPattern.OVERVIEW:
                 raise serializers.ValidationError({"gsd_mm": [self.fields["gsd_mm"].error_messages["required"]]})
             attrs = attrs | {"gsd_mm": OVERVIEW_GSD_M * MM_PER_M}
         if ("camera" in attrs) == ("camera_key" in attrs):
@@ -113,7 +113,8 @@ class ViewsInputSerializer(KnownFieldsSerializer):
 
 
 def views_request(values: Mapping[str, Any]) -> ViewsRequest:
-    return ViewsRequest(values["gsd_mm"] / MM_PER_M, values["camera"], values["min_height_m"], ViewPattern(values["pattern"]))
+    pattern = ViewPattern(values.get("pattern", ViewPattern.DETAIL))
+    return ViewsRequest(values["gsd_mm"] / MM_PER_M, values["camera"], values["min_height_m"], pattern)
 
 
 class ViewPlanInputSerializer(ViewsInputSerializer):

@@ -8746,8 +8746,21 @@ export interface components {
             shown_of_reachable: number;
             components: components["schemas"]["ComponentCoverage"][];
         };
+        /**
+         * @description * `detail` - detail
+         *     * `overview` - overview
+         * @enum {string}
+         */
+        ViewPattern: "detail" | "overview";
         ViewPlan: {
             asset: number;
+            /**
+             * @description not there: detail, photos of every part
+             *
+             *     * `detail` - detail
+             *     * `overview` - overview
+             */
+            pattern?: components["schemas"]["ViewPattern"];
             camera: components["schemas"]["Camera"];
             /** Format: double */
             gsd_mm: number;
@@ -8783,16 +8796,23 @@ export interface components {
             /** @description no-fly zones that the flight would meet at some time: it cannot be flown then */
             zones: components["schemas"]["ViewPlanZone"][];
         };
-        /** @description Photos of every part: with which camera, and how fine. */
+        /** @description Photos of every part, or of the whole from four sides: with which camera, and how fine. */
         ViewPlanInputRequest: {
+            /**
+             * @description detail, which is usual: every part; overview: the whole tower in each of four photos
+             *
+             *     * `detail` - detail
+             *     * `overview` - overview
+             */
+            pattern?: components["schemas"]["ViewPattern"];
             camera?: components["schemas"]["CameraRequest"];
             /** @description of the catalogue, in place of `camera` */
             camera_key?: string;
             /**
              * Format: double
-             * @description ground sample distance: what a pixel shows at most, across the optical axis
+             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed for detail, 50 for an overview
              */
-            gsd_mm: number;
+            gsd_mm?: number;
             /**
              * Format: double
              * @description of the UAV above the ground
@@ -8806,8 +8826,15 @@ export interface components {
             id: number;
             name: string;
         };
-        /** @description Photos of every part of a target. */
+        /** @description Photos of a target. */
         Views: {
+            /**
+             * @description not there: detail, photos of every part
+             *
+             *     * `detail` - detail
+             *     * `overview` - overview
+             */
+            pattern?: components["schemas"]["ViewPattern"];
             /**
              * Format: double
              * @description ground sample distance: what a pixel shows at most, across the optical axis
@@ -8820,16 +8847,23 @@ export interface components {
             min_height_m: number;
             camera: components["schemas"]["Camera"];
         };
-        /** @description Photos of every part: with which camera, and how fine. */
+        /** @description Photos of every part, or of the whole from four sides: with which camera, and how fine. */
         ViewsInputRequest: {
+            /**
+             * @description detail, which is usual: every part; overview: the whole tower in each of four photos
+             *
+             *     * `detail` - detail
+             *     * `overview` - overview
+             */
+            pattern?: components["schemas"]["ViewPattern"];
             camera?: components["schemas"]["CameraRequest"];
             /** @description of the catalogue, in place of `camera` */
             camera_key?: string;
             /**
              * Format: double
-             * @description ground sample distance: what a pixel shows at most, across the optical axis
+             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed for detail, 50 for an overview
              */
-            gsd_mm: number;
+            gsd_mm?: number;
             /**
              * Format: double
              * @description of the UAV above the ground
@@ -9961,6 +9995,7 @@ export type VehicleTextPage = components['schemas']['VehicleTextPage'];
 export type VerificationMail = components['schemas']['VerificationMail'];
 export type View = components['schemas']['View'];
 export type ViewCoverage = components['schemas']['ViewCoverage'];
+export type ViewPattern = components['schemas']['ViewPattern'];
 export type ViewPlan = components['schemas']['ViewPlan'];
 export type ViewPlanInputRequest = components['schemas']['ViewPlanInputRequest'];
 export type ViewPlanZone = components['schemas']['ViewPlanZone'];

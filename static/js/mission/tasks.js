@@ -1,11 +1,11 @@
-/** What is done at targets, as plain values: the usual tasks, and photos of every part. */
+/** What is done at targets, as plain values: the usual tasks, and planned photos. */
 
 /** @import { MissionSelection, PickedTarget, Task, Views } from "./types.d.ts" */
 
 /** Default seconds at a target, as in planning/task.py. */
 export const HOLD_S = { look: 5, photo: 10, hold: 30 };
 export const MAX_HOLD_S = 3600;
-/** Seconds at each photo of a target of which every part is photographed. */
+/** Seconds at each planned photo. */
 const VIEWS_HOLD_S = 3;
 
 /** @typedef {{ kind: Task["kind"], hold_s: number, views?: Views }} WholeTask */
@@ -30,7 +30,8 @@ function usualTask(target) {
 }
 
 /** In one order of names: the server keeps another. @param {Views} views @returns {Views} */
-const inOrder = ({ gsd_mm, min_height_m, camera }) => ({
+const inOrder = ({ pattern = "detail", gsd_mm, min_height_m, camera }) => ({
+  ...(pattern === "detail" ? {} : { pattern }),
   gsd_mm,
   min_height_m,
   camera: /** @type {Views["camera"]} */ (Object.fromEntries(Object.entries(camera).sort())),
@@ -53,7 +54,7 @@ export function isUsualTask(target) {
   return isSameTask(taskOf(target), usualTask(target));
 }
 
-/** Whether every part of it can be photographed. @param {Pick<PickedTarget, "asset" | "kind">} target */
+/** Whether photos of it can be planned. @param {Pick<PickedTarget, "asset" | "kind">} target */
 export const canHaveViews = ({ asset, kind }) => asset !== null && kind === "tower";
 
 /**
@@ -77,7 +78,7 @@ export function withTask(selection, keys, { kind, hold_s = null }) {
 }
 
 /**
- * The same targets, some of them photographed in every part; only a UAV with the camera may fly these.
+ * The same targets, some of them with planned photos; only a UAV with the camera may fly these.
  *
  * @param {MissionSelection} selection
  * @param {string[]} keys

@@ -27,6 +27,7 @@ import type {
   UavConnection,
   UavFigure,
   UavState,
+  ViewPattern,
 } from "../api_types.d.ts";
 import type { RasterMap } from "../map/types.d.ts";
 import type { createHistory, Store } from "../store.js";
@@ -58,12 +59,13 @@ export interface MissionPageData {
 export interface Task {
   kind: TaskKind;
   hold_s?: number | null;
-  /** photos of every part; null: none */
+  /** planned photos; null: none */
   views?: Views | null;
 }
 
-/** Photos of every part of a target: with which camera, how fine, and how low the UAV may come. */
+/** Photos of a target: of every part or an overview, with which camera, how fine, and how low the UAV may come. */
 export interface Views {
+  pattern?: ViewPattern;
   gsd_mm: number;
   min_height_m: number;
   camera: Camera;

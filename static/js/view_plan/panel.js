@@ -1,4 +1,4 @@
-/** The panel that plans photos of a tower: camera, ground sample distance and least height. Each change plans anew. */
+/** The panel that plans photos of a tower: of every part or an overview, camera, GSD and least height. Each change plans anew. */
 
 import { ApiError, isAbort, post } from "../api.js";
 import { gsdText } from "../cameras/words.js";
@@ -12,11 +12,11 @@ import { createViewPlanLayer } from "./layer.js";
 import { resultOf } from "./result.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { Camera, ViewPlan } from "../api_types.d.ts" */
+/** @import { Camera, ViewPattern, ViewPlan } from "../api_types.d.ts" */
 /** @import { MapLibreMap } from "../map/types.d.ts" */
 
 /** @typedef {{ map: MapLibreMap, onRecolour: (act: () => void) => unknown }} Ground */
-/** @typedef {{ gsd_mm: number, min_height_m: number, camera: Camera }} Views what photos are planned by */
+/** @typedef {{ pattern?: ViewPattern, gsd_mm: number, min_height_m: number, camera: Camera }} Views what photos are planned by */
 /** @typedef {{ words: string, act: (views: Views) => unknown }} Take what can be done with planned photos */
 /**
  * @typedef {object} PanelOptions
@@ -30,8 +30,17 @@ const [MIN_GSD_MM, MAX_GSD_MM, GSD_STEP_MM] = [0.5, 10, 0.1];
 const [MIN_HEIGHT_M, MAX_HEIGHT_M] = [2, 60];
 const SETTLED_MS = 300;
 const KEPT = "kept"; // the value of a camera that a target was planned with and no type carries now
-/** What was asked last is asked first of the next tower; camera: "" until one was chosen or has shown anything. */
-const asked = { camera: "", gsd_mm: 2, min_height_m: 4 };
+/** @type {{ value: ViewPattern, words: string }[]} */
+const PATTERNS = [
+  { value: "detail", words: t("Every part") },
+  { value: "overview", words: t("Overview from four sides") },
+];
+/**
+ * What was asked last is asked first of the next tower; camera: "" until one was chosen or has shown anything.
+ *
+ * @type {{ pattern: ViewPattern, camera: string, gsd_mm: number, min_height_m: number }}
+ */
+const asked = { pattern: "detail", camera: "", gsd_mm: 2, min_height_m: 4 };
 
 /** @param {number} height_m @param {(figure: number) => number} round inwards */
 const heightBound = (height_m, round) => round((height_m / SHORT_UNIT.metres) * 10) / 10;
@@ -88,14 +97,22 @@ class ViewPlanPanel {
   #begun = null;
   /** @type {Awaited<ReturnType<typeof readCameras>>["choices"]} */
   #choices = new Map();
+  #pattern = h(
+    "select",
+    { class: "input", id: "view-plan-pattern" },
+    PATTERNS.map(({ value, words }) => h("option", { value, selected: value === asked.pattern }, words)),
+  );
   #camera = h("select", { class: "input", id: "view-plan-camera" });
   #gsd = gsdField();
   #height = heightField();
   #state = h("p", { class: "caption", role: "status" });
   #result = h("div", { class: "view-plan-result" });
+  /** @type {ViewPlan | null} */
+  #shown = null;
   #form = h(
     "form",
     {},
+    h("div", { class: "field" }, h("label", { for: this.#pattern.id }, t("Photos")), this.#pattern),
     h("div", { class: "field" }, h("label", { for: this.#camera.id }, t("Camera")), this.#camera),
     this.#gsd.element,
     this.#height.element,
@@ -137,7 +154,9 @@ class ViewPlanPanel {
     this.#camera.addEventListener("change", () => {
       asked.camera = this.#camera.value;
     });
+    this.#showFields();
     this.#form.addEventListener("change", () => {
+      this.#showFields();
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => this.#plan(), SETTLED_MS);
     });
@@ -168,6 +187,13 @@ class ViewPlanPanel {
     row.scrollIntoView({ block: "nearest" });
   }
 
+  /** An overview has the GSD that the distance gives. */
+  #showFields() {
+    const isOverview = this.#pattern.value === "overview";
+    this.#gsd.element.hidden = isOverview;
+    this.#gsd.input.disabled = isOverview;
+  }
+
   async #start() {
     this.#wait(t("Reading cameras…"));
     try {
@@ -195,9 +221,10 @@ class ViewPlanPanel {
 
   #take() {
     const chosen = this.#choices.get(this.#camera.value);
-    if (!chosen) return;
-    const { gsd_mm, min_height_m } = asked;
-    this.#on.take.act({ gsd_mm, min_height_m, camera: chosen.camera });
+    if (!chosen || !this.#shown) return;
+    const { pattern, gsd_mm } = this.#shown;
+    const { min_height_m } = asked;
+    this.#on.take.act({ ...(pattern ? { pattern } : {}), gsd_mm, min_height_m, camera: chosen.camera });
     this.close();
   }
 
@@ -207,10 +234,13 @@ class ViewPlanPanel {
     const chosen = this.#choices.get(this.#camera.value);
     if (!chosen || !this.#form.checkValidity()) return;
     this.#planning = new AbortController();
-    Object.assign(asked, { gsd_mm: this.#gsd.read(), min_height_m: this.#height.read() });
+    const isOverview = this.#pattern.value === "overview";
+    Object.assign(asked, { pattern: this.#pattern.value, min_height_m: this.#height.read() });
+    if (!isOverview) asked.gsd_mm = this.#gsd.read() ?? asked.gsd_mm;
     this.#wait(t("Planning photos…"));
-    const { gsd_mm, min_height_m } = asked;
-    const body = { asset: this.#asset, ...chosen.request, gsd_mm, min_height_m };
+    const { pattern, gsd_mm, min_height_m } = asked;
+    const fineness = isOverview ? {} : { gsd_mm };
+    const body = { asset: this.#asset, pattern, ...chosen.request, ...fineness, min_height_m };
     const { signal } = this.#planning;
     try {
       const { data } = /** @type {Answer<ViewPlan>} */ (await post("/view-plans", body, { signal }));
@@ -224,7 +254,7 @@ class ViewPlanPanel {
   /** Before a camera was chosen or has shown anything: to the first one that can. @param {ViewPlan} plan */
   #changesCamera(plan) {
     if (plan.photos.length) asked.camera ||= this.#camera.value;
-    const next = asked.camera ? null : firstThatReaches(this.#choices, plan);
+    const next = asked.camera || plan.pattern === "overview" ? null : firstThatReaches(this.#choices, plan);
     if (next === null || next === this.#camera.value) return false;
     this.#camera.value = next;
     return true;
@@ -246,6 +276,7 @@ class ViewPlanPanel {
   /** @param {ViewPlan} plan */
   #show(plan) {
     this.#waited();
+    this.#shown = plan;
     const isOpen = this.#result.querySelector("details")?.open ?? false;
     setChildren(
       this.#result,
@@ -305,7 +336,10 @@ function layerOf({ map, onRecolour }) {
 export function openViewPlan(place, asset, ground, { take, closed = () => {}, ...options }) {
   open?.close();
   layer ??= layerOf(ground);
-  if (options.views) Object.assign(asked, { gsd_mm: options.views.gsd_mm, min_height_m: options.views.min_height_m });
+  if (options.views) {
+    const { pattern = "detail", gsd_mm, min_height_m } = options.views;
+    Object.assign(asked, { pattern, min_height_m, ...(pattern === "detail" ? { gsd_mm } : {}) });
+  }
   open = new ViewPlanPanel(
     asset,
     {

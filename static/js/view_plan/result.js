@@ -24,13 +24,25 @@ function zonesNotice({ zones }) {
 }
 
 /** @param {ViewPlan} plan */
-const figures = ({ photos, photos_bound: bound, duration_s, length_m, clearance_m, focal_length_mm: focal_mm }) =>
+const figures = ({
+  pattern,
+  photos,
+  photos_bound: bound,
+  duration_s,
+  length_m,
+  clearance_m,
+  focal_length_mm: focal_mm,
+}) =>
   h(
     "dl",
     { class: "facts" },
     term(
       t("Photos"),
-      h("span", { title: t("At least {count} are needed.", { count: numberText(bound) }) }, numberText(photos.length)),
+      h(
+        "span",
+        { title: pattern === "overview" ? "" : t("At least {count} are needed.", { count: numberText(bound) }) },
+        numberText(photos.length),
+      ),
     ),
     term(t("Duration"), durationText(duration_s)),
     term(t("Flight length"), lengthText(length_m)),

@@ -104,7 +104,9 @@ export const restText = ({ unreachable, limit }) =>
 export const shareText = (share) => percentText(Math.floor(share * 100 + 1e-9));
 
 /** Why a plan without photos shows nothing, and what to change. @param {ViewPlan} plan */
-export function nothingText({ camera, gsd_mm, clearance_m, coverage }) {
+export function nothingText({ pattern, camera, gsd_mm, clearance_m, coverage }) {
+  if (pattern === "overview")
+    return t("The whole tower does not fit into a picture of this camera. Choose a wider lens.");
   const clearance = exactHeightText(clearance_m);
   const distance_m = standoff_m(camera, gsd_mm);
   const focus_m = camera.nearest_focus_m ?? 0;

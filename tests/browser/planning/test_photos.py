@@ -17,7 +17,7 @@ pytestmark = pytest.mark.browser
 
 CATALOGUE_CAMERA = "dji-m30t-zoom"
 PLANNED_MS = 120_000  # some seconds, more where other tests run
-EVERY_PART = "Photograph every part…"
+PLAN_PHOTOS = "Plan photos…"
 
 
 def stores_mission_with_camera(page: Page) -> tuple[str, str]:
@@ -42,7 +42,7 @@ def test_photos_of_every_part_are_chosen_taken_over_and_kept(visitor: Visitor, p
     page.goto(address)
     wait_for_map(page)
     opens_menu(page)
-    page.get_by_role("button", name=EVERY_PART, exact=True).click()
+    page.get_by_role("button", name=PLAN_PHOTOS, exact=True).click()
     panel = page.get_by_role("region", name="Plan photos")
     panel.get_by_label("Camera", exact=True).select_option(label=camera)
     panel.get_by_label("GSD", exact=True).fill("4")
@@ -71,7 +71,14 @@ def test_photos_of_every_part_are_chosen_taken_over_and_kept(visitor: Visitor, p
     expect(chip).to_have_attribute("title", re.compile("Photograph every part, GSD 4"))
     expect(page.locator("#save-state")).to_contain_text("Saved")
     opens_menu(page)
+    page.get_by_role("button", name=PLAN_PHOTOS, exact=True).click()
+    panel.get_by_label("Photos", exact=True).select_option(label="Overview from four sides")
+    expect(panel.get_by_label("GSD", exact=True)).to_be_hidden()
+    expect(panel.get_by_text("4 photos", exact=True)).to_be_visible(timeout=PLANNED_MS)
+    use.click()
+    expect(chip).to_have_attribute("title", re.compile("^Overview from four sides"))
+    opens_menu(page)
     page.get_by_role("button", name="Take photos", exact=True).click()
     expect(chip).to_have_attribute("title", re.compile("^Take photos, 10"))
     opens_menu(page)
-    expect(page.get_by_role("button", name=EVERY_PART, exact=True)).to_have_attribute("aria-pressed", "false")
+    expect(page.get_by_role("button", name=PLAN_PHOTOS, exact=True)).to_have_attribute("aria-pressed", "false")

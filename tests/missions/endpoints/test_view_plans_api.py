@@ -110,6 +110,25 @@ def test_over_a_slope_every_photo_is_at_an_allowed_height_above_its_own_ground(c
     assert any(abs(photo["height_agl_m"] - photo["height_m"]) > 1.0 for photo in plan["photos"]), "the ground is not level"
 
 
+def test_an_overview_takes_the_whole_tower_from_four_sides_without_a_gsd(client: Client) -> None:
+    asked = {"asset": world(height_m=30.0).towers[2].pk, "camera_key": "dji-m30t-wide", "pattern": "overview"}
+    plan = planned(client, asked)
+    assert (plan["pattern"], plan["gsd_mm"], len(plan["photos"]), plan["photos_bound"]) == ("overview", 50.0, 4, 4)
+    sides = sorted((photo["yaw_deg"] - plan["model"]["bearing_deg"]) % 360.0 // 90.0 for photo in plan["photos"])
+    assert sides == [0, 1, 2, 3]
+    assert plan["coverage"]["shown_of_reachable"] > 0.3
+    for photo in plan["photos"]:
+        assert photo["pitch_deg"] <= 0.0
+
+
+def test_a_pattern_that_is_not_known_and_a_detail_without_a_gsd_are_refused(client: Client) -> None:
+    asset = world(height_m=30.0).towers[2].pk
+    for body, field in (({"pattern": "orbit"}, "pattern"), ({}, "gsd_mm"), ({"pattern": "detail"}, "gsd_mm")):
+        response = post(client, "view-plans", {"asset": asset, "camera_key": ZOOM} | body)
+        assert response.status_code == 400
+        assert list(response.json()["error"]["details"]) == [field]
+
+
 def test_a_finer_gsd_takes_more_photos_and_one_that_no_lens_reaches_none(client: Client) -> None:
     tower = world(height_m=30.0).towers[2]
     counts = [len(planned(client, {"asset": tower.pk, "camera": CAMERA, "gsd_mm": gsd_mm})["photos"]) for gsd_mm in (8, 4)]

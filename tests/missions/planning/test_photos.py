@@ -23,6 +23,8 @@ from missions.services.approval.checks import reasons_against
 from missions.services.approval.document import approval_document, frozen_route
 from missions.services.commands.flight_progress import mark_waypoint_reached
 from missions.services.planning import planner
+from planning.views.camera import camera_to_json
+from planning.views.catalogue import catalogue
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import post
@@ -33,6 +35,7 @@ from workspace.models import Organisation, Role
 pytestmark = pytest.mark.django_db
 
 VIEWS = {"gsd_mm": 4, "camera_key": "dji-m30t-zoom"}
+WIDE_CAMERA = catalogue()["dji-m30t-wide"].camera
 
 
 @pytest.fixture(autouse=True)
@@ -120,6 +123,22 @@ def test_a_plan_of_photos_on_the_map_is_the_missions(here: World, client: Client
     with mock.patch.object(photo_flights, "detail_plan", side_effect=AssertionError("it is kept")):
         mission = made(client, body(photos_of(here.towers[2])))
     assert [row["position"] for row in photos(mission["plan"])] == [pytest.approx(own["position"], abs=1e-7) for own in plan["photos"]]
+
+
+def test_an_overview_is_flown_as_four_photos_and_kept_apart_from_every_part(here: World, client: Client) -> None:
+    uav = tern()
+    UavType.objects.update(cameras=[camera_to_json(WIDE_CAMERA)])
+    overview = {"asset": here.towers[2].pk, "task": {"kind": "photo", "views": {"pattern": "overview", "camera_key": "dji-m30t-wide"}}}
+    answer = made(client, body(overview, uav=uav))
+    views = answer["targets"][0]["task"]["views"]
+    assert (views["pattern"], views["gsd_mm"]) == ("overview", 50.0)
+    assert len(photos(answer["plan"])) == 4
+    detail = made(client, body(photos_of(here.towers[2], gsd_mm=50, camera_key="dji-m30t-wide"), uav=uav))
+    assert "pattern" not in detail["targets"][0]["task"]["views"]
+    assert [row["position"] for row in photos(detail["plan"])] != [row["position"] for row in photos(answer["plan"])]
+    mission = mission_of_organisation(Organisation.objects.get(), answer["id"])
+    frozen = frozen_route(mission.routes.get(), mission)
+    assert sum(waypoint.task is not None and waypoint.task.view is not None for waypoint in frozen.waypoints) == 4
 
 
 def test_without_the_camera_no_uav_takes_them(here: World, client: Client) -> None:

@@ -109,7 +109,7 @@ function createTargetChanges(context) {
     toast(tn(keys.length, "The task of {count} target is set.", "The task of {count} targets is set."), undo);
   }
 
-  /** Photographs every part of targets. @param {string[]} keys @param {Views} views */
+  /** Plans photos of targets. @param {string[]} keys @param {Views} views */
   function setViews(keys, views) {
     if (!change(withViews(selection(), keys, views))) return;
     toast(tn(keys.length, "The task of {count} target is set.", "The task of {count} targets is set."), undo);

@@ -31,12 +31,13 @@ export function taskIcon(task) {
 
 /** "Photos" @param {Task} task */
 export function taskWord({ kind, views }) {
-  if (views) return t("Every part");
+  if (views) return views.pattern === "overview" ? t("Overview") : t("Every part");
   return (TASKS.find((task) => task.kind === kind) ?? TASKS[0]).word();
 }
 
 /** "Take photos, 10 s" @param {Task} task */
 export function taskText(task) {
+  if (task.views?.pattern === "overview") return t("Overview from four sides");
   if (task.views) return t("Photograph every part, GSD {gsd}", { gsd: gsdText(task.views.gsd_mm) });
   const { words } = TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0];
   return task.hold_s ? `${words()}, ${secondsText(task.hold_s)}` : words();
@@ -195,7 +196,7 @@ export function uavMenu(target, actions, selection) {
 
 /**
  * The menu for these targets; `known` is { selection, fleet, orders }, `more` are additional acts: [{ icon, words, act }]. planViews
- * lets the user plan photos of every part of towers.
+ * lets the user plan photos of towers.
  *
  * @param {PickedTarget[]} targets
  * @param {MissionActions} actions
@@ -264,7 +265,7 @@ export function targetMenu(targets, actions, known, { more = [], planViews } = {
         "button",
         { type: "button", "aria-pressed": String(haveViews), onclick: openViews },
         icon("aperture"),
-        t("Photograph every part…"),
+        t("Plan photos…"),
         haveViews && h("span", { class: "end" }, icon("check", "small")),
       ),
     h(

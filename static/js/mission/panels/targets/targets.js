@@ -183,7 +183,7 @@ function more(target, actions) {
 }
 
 /**
- * The photos of every part of towers: a panel over the list, for the first of them; all get its camera and figures.
+ * The photos of towers: a panel over the list, for the first of them; all get its camera and figures.
  *
  * @param {HTMLElement} list
  * @param {MissionActions} actions
