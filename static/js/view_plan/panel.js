@@ -151,6 +151,9 @@ class ViewPlanPanel {
     this.#taking.textContent = on.take.words;
     this.#taking.addEventListener("click", () => this.#take());
     this.#form.addEventListener("submit", (event) => event.preventDefault());
+    this.#pattern.addEventListener("change", () => {
+      this.#isFitted = false;
+    });
     this.#camera.addEventListener("change", () => {
       asked.camera = this.#camera.value;
     });

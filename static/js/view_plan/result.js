@@ -50,8 +50,8 @@ const figures = ({
     term(t("Focal length used"), focalText([focal_mm])),
   );
 
-/** @param {ViewPlan} plan */
-const coverageTable = ({ coverage }) =>
+/** Of an overview without what cannot be shown: that counts closer photos too. @param {ViewPlan} plan */
+const coverageTable = ({ pattern, coverage }) =>
   h(
     "table",
     { class: "coverage" },
@@ -65,7 +65,7 @@ const coverageTable = ({ coverage }) =>
         h("th", { scope: "col" }, t("Component")),
         h("th", { scope: "col", class: "number", title: t("Of what a photo can show.") }, t("Shown")),
         h("th", { scope: "col", class: "number", title: t("95 % of what is shown is as fine or finer.") }, t("GSD")),
-        h("th", { scope: "col" }, t("Cannot be shown")),
+        pattern !== "overview" && h("th", { scope: "col" }, t("Cannot be shown")),
       ),
     ),
     h(
@@ -78,7 +78,7 @@ const coverageTable = ({ coverage }) =>
           h("th", { scope: "row" }, COMPONENTS[row.kind] ?? row.kind),
           h("td", { class: "number" }, row.ofReachable === null ? "—" : shareText(row.ofReachable)),
           h("td", { class: "number" }, row.gsd_mm === null ? "—" : gsdText(row.gsd_mm)),
-          h("td", {}, restText(row)),
+          pattern !== "overview" && h("td", {}, restText(row)),
         ),
       ),
     ),

@@ -18,6 +18,7 @@ from inspection.models import Asset
 from missions.models import Mission, MissionState, UavType, Waypoint
 from missions.services import photo_coverage
 from planning.views.camera import Camera, Gimbal, camera_to_json
+from planning.views.catalogue import catalogue
 from simulation.models import RehearsalTrack
 from telemetry.models import Capture
 from tests.accounts.users import a_user, client_of
@@ -30,6 +31,7 @@ from workspace.models import Organisation, Role, User
 pytestmark = pytest.mark.django_db
 
 TURNING = replace(CAMERA, gimbal=Gimbal(-120.0, 45.0))  # the UAV turns for its photos
+WIDE = catalogue()["dji-m30t-wide"].camera
 VIEWS = {"gsd_mm": 2, "camera": camera_to_json(TURNING)}
 NOW = datetime(2026, 11, 29, 12, tzinfo=UTC)
 
@@ -127,6 +129,17 @@ def test_photos_flown_in_wind_show_what_was_promised(here: World, client: Client
         assert own["photos"] == found["promised"]["photos"]
         assert own["coverage"]["shown"] == pytest.approx(found["promised"]["coverage"]["shown"], abs=0.02)
         assert (own["deviations"], own["not_counted"]) == ([], [])
+
+
+def test_an_overview_flown_in_wind_shows_what_was_promised(here: World, client: Client, person: User) -> None:
+    overview = {"kind": "photo", "views": {"pattern": "overview", "camera": camera_to_json(WIDE)}}
+    mission = planned(client, {"asset": here.towers[2].pk, "task": overview}, camera=WIDE)
+    rehearsed(mission, person, "strong-wind")
+    (found,) = coverage(client, mission)
+    (windy,) = found["rehearsed"]
+    assert windy["photos"] == found["promised"]["photos"] == 4
+    assert windy["coverage"]["shown"] == pytest.approx(found["promised"]["coverage"]["shown"], abs=0.02)
+    assert (windy["deviations"], windy["not_counted"]) == ([], [])
 
 
 def test_photos_that_a_rehearsal_missed_or_took_of_something_else_are_named(here: World, client: Client, person: User) -> None:
