@@ -90,7 +90,7 @@ def test_a_plan_that_runs_out_of_solver_calls_is_as_safe(
     put_zones(600, draw)
     region, judge, author, every_air, times = Region(), Judge(hills), a_user(), airs(draw), departures(draw, 2)
     flown = 0
-    for _ in range(60):
+    for _ in range(30):
         asked = flight(region, draw, draw.choice(every_air), draw.choice(times), author)
         try:
             plan = make_plan(request=asked)
