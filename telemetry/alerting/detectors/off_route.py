@@ -30,17 +30,17 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     if off_m <= warning_m * (CLEAR_SHARE if inputs.is_open(CODE) else 1.0):
         return []
     level = CRITICAL if off_m > critical_m else WARNING
-    values = {"uav": inputs.uav.name, "metres": math.ceil(off_m), "limit": round(warning_m)}
+    values = {"uav": inputs.uav.name, "metres": math.ceil(off_m), "limit": math.floor(warning_m)}
     return [Finding(CODE, level, words, values, details={"across_m": round(place.across_m, 1), "along_m": round(place.along_m, 1)})]
 
 
 def _away_m(inputs: DetectorInput, place: RoutePlace) -> float:
     """Return the distance in space from the route [m], beside it where the height is not reported."""
-    measured = None if inputs.fresh is None else inputs.fresh.measurement
-    position = None if inputs.fresh is None else position_of(inputs.fresh)
-    if inputs.model is None or position is None or measured is None or measured.altitude_relative_m is None:
+    report = inputs.fresh
+    position = None if report is None else position_of(report)
+    if inputs.model is None or report is None or position is None or report.measurement.altitude_relative_m is None:
         return place.across_m
-    return inputs.model.line.away_m(place, position, measured.altitude_relative_m)
+    return inputs.model.line.away_m(place, position, report.measurement.altitude_relative_m)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=5.0)
