@@ -15,14 +15,14 @@ TURNS_DEG = (0.0, 10.0, -10.0, 20.0, -20.0, 30.0, -30.0)  # by which it is moved
 PITCHES_DEG = (-30.0, -20.0, -10.0, 0.0, 10.0)  # the first that heights allow
 FILLED = 0.9  # of the picture's width or height at most, by the tower
 STEP_M = 1.0  # farther away, until nothing stands there
-FARTHEST_M = 120.0  # from the tower: wires and supports are known up to SITE_M, and reach so much less far by clearance and swing
+MAX_AWAY_M = 120.0  # from the tower: wires and supports are known up to SITE_M, and reach so much less far by clearance and swing
 NEARLY = 1.25  # as far as the nearest of all: as good
 
 
 def overview_poses(site: TowerSite, camera: Camera) -> Poses:
     """Return up to four poses, each of which has the whole tower in its picture at the shortest focal length.
 
-    A side from which that is not possible within FARTHEST_M is left out.
+    A side from which that is not possible within MAX_AWAY_M is left out.
     """
     found = [pose for side in SIDES_DEG if (pose := _pose(site, camera, site.tower.bearing_deg + side)) is not None]
     values = np.array(found).reshape(-1, 5)
@@ -64,8 +64,8 @@ def _whole_m(beside: FloatArray, camera: Camera, yaw_deg: float, pitch_deg: floa
 
 
 def _clear_m(middle: FloatArray, forward: FloatArray, least_m: float, keep_out: KeepOut) -> float | None:
-    """The least distance [m] from the middle, from which an axis looks, that is out of the keep-out; None within FARTHEST_M."""
+    """The least distance [m] from the middle, from which an axis looks, that is out of the keep-out; None within MAX_AWAY_M."""
     level = math.hypot(float(forward[0]), float(forward[1]))
-    away_m = np.arange(least_m, FARTHEST_M / level, STEP_M)
+    away_m = np.arange(least_m, MAX_AWAY_M / level, STEP_M)
     clear = np.flatnonzero(~keep_out.holds(middle - away_m[:, None] * forward)) if len(away_m) else np.zeros(0)
     return float(away_m[int(clear[0])]) if len(clear) else None

@@ -15,7 +15,7 @@ from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 
-CATALOGUE_CAMERA = "dji-m30t-zoom"
+CATALOGUE_CAMERA = "sony-a7r-iv-55"
 PLANNED_MS = 120_000  # some seconds, more where other tests run
 PLAN_PHOTOS = "Plan photos…"
 
