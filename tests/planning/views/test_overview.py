@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 
 from planning.views.camera import Camera, Gimbal
 from planning.views.ground_band import GroundBand
-from planning.views.overview import overview_poses
 from planning.views.proof import flown_camera
 from planning.views.view_flight import NO_PHOTO
-from planning.views.view_plan import ViewSpeeds, overview_plan
+from planning.views.view_plan import ViewSpeeds, overview_plan, overview_poses
 from planning.views.visibility import axes_of
 from tests.planning.views.geometry_oracle import flown_places, to_triangles_m
 from tests.planning.views.towers import FULL_FRAME, MAX_HEIGHT_M, MIN_HEIGHT_M, TOWERS, WIDE, ZOOM, StandingTower, standing
