@@ -254,13 +254,10 @@ class ViewPlanZoneSerializer(serializers.Serializer):
     name = serializers.CharField()
 
 
-class ViewPlanSerializer(serializers.Serializer):
+class ViewPlanSerializer(ViewsSerializer):
+    """Planned photos, with what was asked for."""
+
     asset = serializers.IntegerField()
-    pattern = serializers.ChoiceField(
-        choices=[own.value for own in ViewPattern], required=False, help_text="not there: detail, photos of every part"
-    )
-    camera = CameraSerializer()
-    gsd_mm = serializers.FloatField()
     focal_length_mm = serializers.FloatField(help_text="with which the photos are taken")
     farthest_m = serializers.FloatField(help_text="distance up to which they are fine enough")
     clearance_m = serializers.FloatField(help_text="least distance from wires and supports")

@@ -8752,8 +8752,8 @@ export interface components {
          * @enum {string}
          */
         ViewPattern: "detail" | "overview";
+        /** @description Planned photos, with what was asked for. */
         ViewPlan: {
-            asset: number;
             /**
              * @description not there: detail, photos of every part
              *
@@ -8761,9 +8761,18 @@ export interface components {
              *     * `overview` - overview
              */
             pattern?: components["schemas"]["ViewPattern"];
-            camera: components["schemas"]["Camera"];
-            /** Format: double */
+            /**
+             * Format: double
+             * @description ground sample distance: what a pixel shows at most, across the optical axis
+             */
             gsd_mm: number;
+            /**
+             * Format: double
+             * @description of the UAV above the ground
+             */
+            min_height_m: number;
+            camera: components["schemas"]["Camera"];
+            asset: number;
             /**
              * Format: double
              * @description with which the photos are taken

@@ -225,8 +225,7 @@ class ViewPlanPanel {
   #take() {
     const chosen = this.#choices.get(this.#camera.value);
     if (!chosen || !this.#shown) return;
-    const { pattern, gsd_mm } = this.#shown;
-    const { min_height_m } = asked;
+    const { pattern, gsd_mm, min_height_m } = this.#shown;
     this.#on.take.act({ ...(pattern ? { pattern } : {}), gsd_mm, min_height_m, camera: chosen.camera });
     this.close();
   }
