@@ -59,6 +59,7 @@ def test_photos_of_every_part_are_chosen_taken_over_and_kept(visitor: Visitor, p
     use.click()
     expect(panel).to_have_count(0)
     chip = page.locator("#target-list .task-chip.task")
+    expect(chip).to_be_focused()
     expect(chip).to_have_attribute("title", re.compile("Photograph every part, GSD 4"))
     page.get_by_role("button", name=re.compile("^Plan P")).click()
     message = page.get_by_text("Photos near wires need terrain data around the tower.").first

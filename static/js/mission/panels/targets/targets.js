@@ -197,12 +197,16 @@ function viewPlanning(list, actions, { ground }) {
     const [{ asset, label, task }] = targets;
     if (asset === null) return;
     const keys = targets.map(({ key }) => key);
+    const opener = document.activeElement;
     openViewPlan(place, asset, ground, {
       title: t("Photos of {name}", { name: label }),
       views: task?.views ?? null,
       take: {
         words: tn(targets.length, "Use for this target", "Use for {count} targets"),
         act: (views) => actions.setViews(keys, views),
+      },
+      closed() {
+        if (opener instanceof HTMLElement && opener.isConnected) opener.focus();
       },
     });
   };
