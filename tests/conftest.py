@@ -1,7 +1,8 @@
 """Fixtures for every test: generated regions, real data beside the checkout, and a database that is copied from a migrated one."""
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
+from copy import deepcopy
 from hashlib import sha256
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from hypothesis import settings
 from pytest_django import DjangoDbBlocker
 
 from inspection.demo_region import make_quillmoor, make_region, write_osm_file
+from tests.cases import RowsForAModule
+from tests.missions.worlds import World, world
 from workspace.models import Organisation
 
 settings.register_profile("spanwise", deadline=None)  # tests do not time
@@ -88,9 +91,7 @@ def delete_rows() -> None:
 
 
 @pytest.fixture(scope="session")
-def rows_for_a_module(
-    django_db_setup: None, django_db_blocker: DjangoDbBlocker
-) -> Callable[[Callable[[], None]], AbstractContextManager[None]]:
+def rows_for_a_module(django_db_setup: None, django_db_blocker: DjangoDbBlocker) -> RowsForAModule:
     """Make rows once that all tests of a module see, in a transaction around theirs: for a fixture of scope `module`.
 
     For modules whose tests do not commit.
@@ -108,6 +109,19 @@ def rows_for_a_module(
             block.__exit__(None, None, None)
 
     return made_by
+
+
+@pytest.fixture(scope="module")
+def world_of_the_module(rows_for_a_module: RowsForAModule) -> Iterator[World]:
+    made: list[World] = []
+    with rows_for_a_module(lambda: made.append(world())):
+        yield made[0]
+
+
+@pytest.fixture
+def here(world_of_the_module: World, db: None) -> World:
+    """The world of tests/missions/worlds.py with its graph, made once for all tests of a module, which do not commit."""
+    return deepcopy(world_of_the_module)
 
 
 @pytest.fixture(scope="session")

@@ -104,11 +104,13 @@ def test_a_page_in_another_language_preloads_its_texts(storage: StaticFiles) -> 
     assert re.search(r'rel="modulepreload" href="/static/js/locale/de\.[0-9a-f]{12}\.js"', text)
 
 
+@pytest.mark.long
 def test_bundles_of_the_same_sources_have_the_same_names(collected: Path, storage: StaticFiles) -> None:
     again, _ = build(collected)
     assert {name: bundle.path for name, bundle in again.items()} == {name: storage.hashed_files[name] for name in again}
 
 
+@pytest.mark.long
 def test_bundles_of_the_build_before_are_kept_and_those_of_earlier_builds_deleted(collected: Path, tmp_path: Path) -> None:
     root = tmp_path / "static"
     shutil.copytree(collected, root)

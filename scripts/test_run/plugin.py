@@ -5,6 +5,7 @@
 
 import gc
 import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from scripts.test_run.reports import Report, allowed_skips
 
 WORKER_VARIABLES = ("REDIS_URL", "SPANWISE_VAR")  # ./check gives a pattern of each, named CHECK_…
 DATABASE_FIXTURES = {"db", "transactional_db", "django_db_setup"}
+BEGAN_CPU_S = pytest.StashKey[float]()
 
 
 def use_own_servers(environment: "os._Environ[str] | dict[str, str]") -> None:
@@ -43,6 +45,12 @@ def kind_of(item: pytest.Item) -> str:
     return "database" if uses_database else "unit"
 
 
+def used_cpu_s() -> float:
+    """Return the processor time of this process and of its ended children, s."""
+    usages = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
+
+
 def reason_of(report: pytest.TestReport | pytest.CollectReport) -> str:
     """Return the reason of a skip, without pytest's prefix."""
     where = report.longrepr
@@ -64,6 +72,8 @@ class Reporter:
             self.report.skipped[report.nodeid] = reason_of(report)
         elif report.when == "call" or (report.failed and report.when == "setup"):
             self.report.ran[str(dict(report.user_properties).get("kind", "unit"))] += 1
+        elif report.when == "teardown":
+            self.report.cpu_s[report.nodeid] = float(str(dict(report.user_properties)["cpu_s"]))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
@@ -89,4 +99,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
+    item.stash[BEGAN_CPU_S] = used_cpu_s()
     item.user_properties.append(("kind", kind_of(item)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> None:
+    if call.when == "teardown":
+        item.user_properties.append(("cpu_s", used_cpu_s() - item.stash[BEGAN_CPU_S]))

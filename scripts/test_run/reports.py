@@ -13,6 +13,7 @@ from pathlib import Path
 
 FORBIDDEN_SKIPS = 8  # exit code, beside those of pytest (0 to 5)
 NO_TESTS = 5  # pytest's own exit code
+COSTLIEST = 10  # tests that the summary names
 KINDS = ("unit", "database", "browser", "javascript")
 TAP_SKIP = re.compile(r"^\s*(?:not )?ok \d+ - (?P<name>.*) # (?P<kind>SKIP|TOD[O])\b ?(?P<reason>.*)$", re.MULTILINE)
 TAP_TOTAL = re.compile(r"^# (?P<name>pass|fail) (?P<number>\d+)$", re.MULTILINE)
@@ -20,10 +21,11 @@ TAP_TOTAL = re.compile(r"^# (?P<name>pass|fail) (?P<number>\d+)$", re.MULTILINE)
 
 @dataclass
 class Report:
-    """Number of tests by kind, and the reason of each skipped one by its name."""
+    """Number of tests by kind, the reason of each skipped one by its name, and the processor time of each test with its fixtures, s."""
 
     ran: Counter[str] = field(default_factory=Counter)
     skipped: dict[str, str] = field(default_factory=dict)
+    cpu_s: dict[str, float] = field(default_factory=dict)
 
     def forbidden(self, allowed: Iterable[str]) -> dict[str, str]:
         """Return the skips whose reason matches no allowed pattern."""
@@ -37,7 +39,7 @@ class Report:
         return NO_TESTS if code == 0 and not self.ran.total() else code
 
     def write(self, path: Path) -> None:
-        path.write_text(json.dumps({"ran": self.ran, "skipped": self.skipped}))
+        path.write_text(json.dumps({"ran": self.ran, "skipped": self.skipped, "cpu_s": self.cpu_s}))
 
 
 def allowed_skips(project: Path) -> list[str]:
@@ -52,7 +54,7 @@ def read_report(path: Path) -> Report:
         kept = json.loads(path.read_text())
     except OSError:
         return Report()
-    return Report(Counter(kept["ran"]), kept["skipped"])
+    return Report(Counter(kept["ran"]), kept["skipped"], kept["cpu_s"])
 
 
 def read_tap(path: Path) -> Report:
@@ -67,11 +69,16 @@ def read_tap(path: Path) -> Report:
 
 
 def summary(reports: Iterable[Report]) -> list[str]:
-    """Return the lines of counts by kind and of skips by reason."""
+    """Return the lines of counts by kind, of skips by reason, and of the processor time of tests with the costliest ones."""
     reports = list(reports)
     ran = sum((report.ran for report in reports), Counter[str]())
     reasons = Counter(reason for report in reports for reason in report.skipped.values())
     lines = ["Tests: " + ", ".join(f"{ran[kind]:,} {kind}" for kind in KINDS if ran[kind])] if ran else []
     if lines:
         lines.append(f"Skipped: {reasons.total()}")
-    return [*lines, *(f"  {number:5}  {reason}" for reason, number in sorted(reasons.items()))]
+    lines += (f"  {number:5}  {reason}" for reason, number in sorted(reasons.items()))
+    cpu_s = {name: used_s for report in reports for name, used_s in report.cpu_s.items()}
+    if cpu_s:
+        lines.append(f"Processor time of tests and the programs they end: {sum(cpu_s.values()):,.0f} s")
+        lines += (f"  {used_s:5.1f}  {name}" for name, used_s in sorted(cpu_s.items(), key=lambda pair: -pair[1])[:COSTLIEST])
+    return lines

@@ -38,17 +38,12 @@ from tests.accounts.users import a_user, client_of
 from tests.missions import worlds
 from tests.missions.commands.outbox import claim, fence, now
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
 
 LATER = datetime(2027, 5, 4, 9, 0, tzinfo=UTC)
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -8,15 +8,10 @@ from django.test import Client
 from missions.models import Mission, MissionState, TargetState
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, post
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

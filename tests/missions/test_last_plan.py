@@ -5,14 +5,9 @@ from django.test import Client
 
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, post
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -11,18 +11,13 @@ from inspection.services import mark_ground_changed
 from missions.models import Mission, Route, Waypoint
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, post
-from tests.missions.worlds import World, world, zone_around
+from tests.missions.worlds import World, zone_around
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
 
 MONDAY_NOON = datetime(2026, 11, 23, 12, tzinfo=UTC)
 A_LEG_S = 60.0
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -20,15 +20,10 @@ from tests.accounts.users import a_user, client_of
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import mission_body, post
 from tests.missions.planning.test_planning import request
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from django.utils.translation import override
 from missions.models import Mission, MissionState, MissionUav, Uav, UavState, UavType
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, plan_body, post
-from tests.missions.worlds import UAV_AT, World, world
+from tests.missions.worlds import UAV_AT, World
 
 pytestmark = pytest.mark.django_db
 
@@ -20,11 +20,6 @@ IRIS = {"battery_wh": 56.6, "mass_kg": 1.545, "cruise_speed_mps": 10.0, "max_air
 @pytest.fixture(autouse=True)
 def empty_cache() -> None:
     cache.clear()
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

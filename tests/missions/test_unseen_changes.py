@@ -10,15 +10,10 @@ from missions.models import MissionState, UavCommand
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, dispatched, fleet, planned
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -48,6 +48,7 @@ def test_few_failures_are_tried_again_and_many_are_not(late: int, patience: int,
     assert [(tmp_path / "tests" / "browser" / f"tries-{number}").read_text() for number in range(7)] == tries.split()
 
 
+@pytest.mark.long
 def test_tests_that_failed_in_one_of_several_workers_are_tried_again_in_none(tmp_path: Path) -> None:
     result = _run(_step(tmp_path, late=1, patience=1, tests=2, workers=2), tmp_path)
     assert (result.code, result.late) == (0, ("tests/browser/test_late.py::test_it[0]",))

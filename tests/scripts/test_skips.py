@@ -57,7 +57,10 @@ def test_a_skip_of_the_list_passes_and_tests_are_counted_by_kind(workers: int, t
     assert code == 0, output
     assert report.skipped == {"test_1.py::test_not": "real data not here: a.pbf"}
     assert report.ran == {"unit": 1, "browser": 1, "database": 2}
-    assert summary([report]) == ["Tests: 1 unit, 2 database, 1 browser", "Skipped: 1", "      1  real data not here: a.pbf"]
+    assert summary([report])[:3] == ["Tests: 1 unit, 2 database, 1 browser", "Skipped: 1", "      1  real data not here: a.pbf"]
+    assert all(used_s >= 0.0 for used_s in report.cpu_s.values())
+    reports = [Report(cpu_s={"one": 1_000.0, "two": 0.25}), Report(cpu_s={"three": 7.0})]
+    assert summary(reports) == ["Processor time of tests and the programs they end: 1,007 s", "  1000.0  one", "    7.0  three", "    0.2  two"]
 
 
 @pytest.mark.parametrize("workers", [0, 2])

@@ -1,14 +1,12 @@
 """Every test of simulation has its own cache of graphs."""
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.cases import RowsForAModule
 from tests.simulation.rehearsals.random_rehearsals import bring_in_demo_region
-
-RowsForAModule = Callable[[Callable[[], None]], AbstractContextManager[None]]
 
 
 @pytest.fixture(autouse=True)

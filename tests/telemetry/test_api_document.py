@@ -52,6 +52,7 @@ def run_here(task: str, *, args: list[str], retry: bool) -> None:
     TASKS[task](*args)
 
 
+@pytest.mark.long
 def test_every_example_of_the_document_runs(live_server: Any, here: Endpoint) -> None:
     world()
     token = create_api_token(user=a_user(Role.ADMINISTRATOR), name="example", expires_at=timezone.now() + timedelta(hours=1))

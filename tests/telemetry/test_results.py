@@ -14,16 +14,11 @@ from missions.services.commands.flight_progress import mark_started
 from telemetry.models import InspectionResult, TelemetryStream
 from tests.accounts.users import a_user, client_of
 from tests.missions.flights import an_operator, dispatched, fleet
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
 NOON = datetime(2026, 5, 4, 12, tzinfo=UTC)
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 """One request commands the UAVs of a mission that have a route of it sent or in flight, and no others."""
 
+from collections.abc import Iterator
+from copy import deepcopy
 from datetime import timedelta
 from typing import Any
 
@@ -15,18 +17,14 @@ from missions.services.commands.steering import command_uav, mission_in_hand
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import BELIEVED_FOR
 from tests.accounts.users import a_user, client_of
+from tests.cases import RowsForAModule
 from tests.missions.api import post
 from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import Organisation, User
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture
@@ -53,18 +51,30 @@ def started(mission: Mission, person: User, *uavs: Uav) -> None:
     mission.refresh_from_db()
 
 
+@pytest.fixture(scope="module")
+def in_flight(world_of_the_module: World, rows_for_a_module: RowsForAModule) -> Iterator[list[Any]]:
+    made: list[Any] = []
+
+    def make() -> None:
+        person, uavs = a_user(), fleet("Tern", "Kite", "Crow", "Rook")
+        first, second = uavs[:2], uavs[2:]
+        south = dispatched(person, first, world_of_the_module.towers[1:3], name="South")
+        started(south, person, *first)
+        north = dispatched(person, second, world_of_the_module.towers[1:3], name="North")
+        started(north, person, *second)
+        for place, uav in enumerate(second, start=len(first)):
+            south.mission_uavs.create(uav=uav, name=uav.name, sequence=place, start=uav.location, cruise_speed_mps=10.0)
+        made.extend((south, first, north, second))
+
+    with rows_for_a_module(make):
+        yield made
+
+
 @pytest.fixture
-def two(here: World, person: User) -> tuple[Mission, list[Uav], Mission, list[Uav]]:
+def two(in_flight: list[Any], db: None) -> list[Any]:
     """Two missions in flight with two UAVs each. The first also lists the second's UAVs, and plans no route for them."""
-    uavs = fleet("Tern", "Kite", "Crow", "Rook")
-    first, second = uavs[:2], uavs[2:]
-    south = dispatched(person, first, here.towers[1:3], name="South")
-    started(south, person, *first)
-    north = dispatched(person, second, here.towers[1:3], name="North")
-    started(north, person, *second)
-    for place, uav in enumerate(second, start=len(first)):
-        south.mission_uavs.create(uav=uav, name=uav.name, sequence=place, start=uav.location, cruise_speed_mps=10.0)
-    return south, first, north, second
+    UavLink.objects.update(last_message_at=timezone.now())
+    return deepcopy(in_flight)
 
 
 def kinds_of(*uavs: Uav) -> list[str]:
@@ -109,23 +119,23 @@ def test_an_abort_of_one_mission_leaves_the_others_uavs_untouched(two: Any, clie
 
 
 def test_a_route_that_is_planned_and_not_sent_does_not_take_its_uav_from_the_mission_that_it_flies(here: World, person: User) -> None:
-    """South plans Tern and Kite and is sent to Tern alone; Kite flies North, which was sent before."""
-    tern, kite = uavs = fleet("Tern", "Kite")
+    """South plans Gull and Wren and is sent to Gull alone; Wren flies North, which was sent before."""
+    gull, wren = uavs = fleet("Gull", "Wren")
     south, _approval = approved(person, uavs, here.towers[1:3], name="South")
-    north = planned(person, [kite], here.towers[:1], name="North")
+    north = planned(person, [wren], here.towers[:1], name="North")
     approve_mission(mission=north, actor=person)
     dispatch_mission(mission=north, actor=person)
     north.refresh_from_db()
-    started(north, person, kite)
+    started(north, person, wren)
     dispatch_mission(mission=south, actor=person, place=0)
     south.refresh_from_db()
-    flies(tern)
-    assert mission_in_hand(kite) == north
-    assert codes(given(south, "return", person)) == {"Tern": []}
-    assert kinds_of(kite) == []
-    assert codes(given(north, "pause", person)) == {"Kite": []}
-    carry(kite)
-    assert command_uav(uav=kite, kind=CommandKind.RESUME, actor=person).mission == north
+    flies(gull)
+    assert mission_in_hand(wren) == north
+    assert codes(given(south, "return", person)) == {"Gull": []}
+    assert kinds_of(wren) == []
+    assert codes(given(north, "pause", person)) == {"Wren": []}
+    carry(wren)
+    assert command_uav(uav=wren, kind=CommandKind.RESUME, actor=person).mission == north
 
 
 def test_each_uav_is_answered_for_by_itself(two: Any, person: User) -> None:
@@ -239,13 +249,13 @@ def test_another_organisations_missions_and_uavs_are_not_reached(two: Any, perso
 
 
 def test_a_mission_that_is_not_on_its_way_has_nobody_to_command(here: World, person: User, client: Client) -> None:
-    uavs = fleet("Tern")
+    uavs = fleet("Gull")
     mission, _approval = approved(person, uavs, here.towers[:1])
     flies(*uavs)
     answer = post(client, f"missions/{mission.pk}/commands", {"kind": "return"})
     assert answer.status_code == 409
     assert answer.json()["error"]["code"] == "nobody_in_mission"
-    assert codes(given(mission, "return", person, *uavs)) == {"Tern": ["not_in_mission"]}
+    assert codes(given(mission, "return", person, *uavs)) == {"Gull": ["not_in_mission"]}
 
 
 def test_a_return_in_turn_lets_the_others_hold_first(two: Any, person: User, client: Client) -> None:

@@ -19,17 +19,12 @@ from missions.services.missions import MissionChange
 from tests.missions import worlds
 from tests.missions.commands.outbox import claim, fence, now
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, planned
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import AuditEntry, User
 
 pytestmark = pytest.mark.django_db
 
 LATER = datetime(2027, 5, 4, 9, 0, tzinfo=UTC)
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

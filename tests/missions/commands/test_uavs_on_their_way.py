@@ -7,15 +7,10 @@ from missions.services import change_uav
 from missions.services.commands.dispatch import abort_mission
 from missions.services.commands.refused import Refused
 from tests.missions.flights import an_operator, carry, dispatched, fleet
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -12,15 +12,10 @@ from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch, post
 from tests.missions.commands.outbox import a_uav, claim, fence
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

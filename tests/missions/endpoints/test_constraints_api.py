@@ -9,17 +9,12 @@ from django.test import Client
 from missions.models import Base, InspectionTarget, Mission
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import TERN, mission_body, patch, plan_body, post, unlimited_type
-from tests.missions.worlds import UAV_AT, World, world
+from tests.missions.worlds import UAV_AT, World
 from workspace.models import Job, JobState, Role
 
 pytestmark = pytest.mark.django_db
 
 QUALITY = {"lower_bound_m", "lower_bound_s", "lower_bound_wh", "gap", "is_proven", "gap_of", "method", "wish"}
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

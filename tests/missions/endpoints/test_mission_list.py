@@ -16,7 +16,7 @@ from missions.services import duplicate_mission
 from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import line
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
-from tests.missions.worlds import UAV_AT, World, world, zone_around
+from tests.missions.worlds import UAV_AT, World, zone_around
 from workspace.models import Job, JobState, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -25,11 +25,6 @@ pytestmark = pytest.mark.django_db
 @pytest.fixture(autouse=True)
 def empty_cache() -> None:
     cache.clear()
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 def named(role: Role, name: str) -> User:

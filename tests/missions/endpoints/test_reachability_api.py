@@ -6,7 +6,7 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.test import Client
 
-from inspection.models import Asset, NoFlyZone
+from inspection.models import Asset, GraphSnapshot, NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Base, Uav, UavState
 from tests.accounts.users import a_user, client_of
@@ -15,11 +15,6 @@ from tests.missions.worlds import UAV_AT, World, island, world, zone_around
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture
@@ -129,6 +124,7 @@ def test_a_saved_zone_counts_at_once_without_a_new_graph(here: World, client: Cl
 
 
 def test_too_tall_and_cut_off_are_told_apart(client: Client) -> None:
+    Asset.objects.all().delete()
     tall = world(height_m=110.0)
     lone = island()
     found = codes(asked(client))
@@ -189,6 +185,7 @@ def test_what_makes_no_sense_is_refused(here: World, client: Client, fault: dict
 
 
 def test_without_a_network_there_is_nothing_to_tell(client: Client) -> None:
+    GraphSnapshot.objects.all().delete()
     assert asked(client, 503)["error"]["code"] == "no_graph"
 
 

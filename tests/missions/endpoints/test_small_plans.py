@@ -15,7 +15,7 @@ from inspection.models import GraphSnapshot
 from missions import services
 from tests.accounts.users import a_user
 from tests.missions.api import plan_body
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from tests.workspace.counters import forget_counts
 from workspace.api.throttling import ScopedRate
 from workspace.api_tokens import create_api_token
@@ -23,11 +23,6 @@ from workspace.models import ApiToken, Role, User
 
 pytestmark = pytest.mark.django_db
 CSRF_TOKEN = "k" * 32
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 def program_of(user: User) -> Client:

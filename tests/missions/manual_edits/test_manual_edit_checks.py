@@ -12,17 +12,12 @@ from inspection.models import NoFlyZone
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, post
 from tests.missions.manual_edits.test_manual_edits import as_wished, longest_leg, planned_with, put
-from tests.missions.worlds import World, world, zone_around
+from tests.missions.worlds import World, zone_around
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
 
 DEPARTS_AT = datetime(2027, 3, 1, 10, 0, tzinfo=UTC)
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

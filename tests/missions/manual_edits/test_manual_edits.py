@@ -11,14 +11,9 @@ from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import mission_body, patch, post
 from tests.missions.plane import apart_m
-from tests.missions.worlds import World, power_line, rebuild, world, zone_around
+from tests.missions.worlds import World, power_line, rebuild, zone_around
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from missions.models import Mission, Route, Waypoint
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, plan_body, post
 from tests.missions.test_stale_zones import hours
-from tests.missions.worlds import World, world, zone_around
+from tests.missions.worlds import World, zone_around
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
@@ -21,11 +21,6 @@ TODAY = datetime.now(UTC).replace(hour=0, minute=0, second=0, microsecond=0)
 SUNDAY = TODAY + timedelta(days=6 - TODAY.weekday())
 MONDAY, TUESDAY = SUNDAY + timedelta(days=1), SUNDAY + timedelta(days=2)
 TIME_MARGIN = timedelta(minutes=5)
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -204,7 +204,7 @@ def test_several_targets_with_photos_are_planned_by_a_job(here: World, client: C
     assert response.status_code == 202
 
 
-@settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=2, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, 5), st.sampled_from([2.0, 4.0, 8.0]), st.floats(-90.0, 90.0), st.floats(18.0, 70.0))
 def test_no_leg_of_photos_comes_near_any_wire(
     here: World, client: Client, tower: int, gsd_mm: float, turned_deg: float, beside_m: float

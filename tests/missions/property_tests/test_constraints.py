@@ -28,11 +28,6 @@ pytestmark = pytest.mark.django_db
 WEST, EAST = uav((10.0, 55.995), name="West"), uav((10.02, 55.995), name="East")
 
 
-@pytest.fixture
-def here() -> World:
-    return world()
-
-
 def targets_of(plan: dict[str, Any]) -> list[list[int]]:
     return [route["targets"] for route in plan["routes"]]
 

@@ -10,15 +10,10 @@ from missions.models import Uav
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import TERN, mission_body, plan_body, post, unlimited_type
-from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
+from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, zone_around
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -12,16 +12,11 @@ from missions.services.mission_plans import PLANNING_TASK
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
-from tests.missions.worlds import World, power_line, rebuild, world, zone_around
+from tests.missions.worlds import World, power_line, rebuild, zone_around
 from workspace.models import Job, JobState
 
 pytestmark = pytest.mark.django_db
 IRIS = TERN | {"position": [10.0, 55.9999], "cruise_speed_mps": 8.0, "battery_wh": 56.6, "max_airspeed_mps": 11.0}
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

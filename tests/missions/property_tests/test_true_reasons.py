@@ -17,16 +17,11 @@ from tests.cases import long
 from tests.missions.oracles.reason_oracle import ReasonOracle
 from tests.missions.property_tests.random_missions import Region, put_random_zones
 from tests.missions.property_tests.test_random_missions import MissionModel
-from tests.missions.worlds import World, island, request, uav, world, zone_around
+from tests.missions.worlds import World, island, request, uav, zone_around
 
 pytestmark = pytest.mark.django_db
 
 MISSIONS = 60  # of each region
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 def message_of(plan: dict[str, Any]) -> str:

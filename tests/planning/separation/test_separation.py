@@ -278,7 +278,7 @@ BLUR_M = 1.01 * STEP_S * 14.0  # what two UAVs can come nearer to each other bet
 FRAME = 0.01  # how far the checker's flat world may be out
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(flights(most=2))
 def test_the_time_between_two_is_what_dense_sampling_finds(pair):
     one, other = (moments_of(flown, STEP_S, hover_s=2_000.0) for flown in pair)
@@ -291,7 +291,7 @@ def test_the_time_between_two_is_what_dense_sampling_finds(pair):
     assert bool(conflicts(pair, rules=RULES)) == (exact_s < RULES.time_s)
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(flights())
 def test_what_is_kept_apart_breaks_the_rule_nowhere_but_where_it_says(routes):
     is_kept_apart(routes)

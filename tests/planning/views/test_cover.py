@@ -25,7 +25,7 @@ def fewest(shows: np.ndarray, area_m2: np.ndarray, kind: np.ndarray, share: floa
     )
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10_000), st.sampled_from([0.7, 0.95, 1.0]), st.floats(0.05, 0.6))
 def test_the_choice_shows_enough_and_lies_between_the_bound_and_the_best(seed: int, share: float, density: float) -> None:
     random = np.random.default_rng(seed)

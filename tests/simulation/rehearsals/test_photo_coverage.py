@@ -22,6 +22,7 @@ from planning.views.catalogue import catalogue
 from simulation.models import RehearsalTrack
 from telemetry.models import Capture
 from tests.accounts.users import a_user, client_of
+from tests.cases import long
 from tests.missions.api import post
 from tests.missions.photo_missions import CAMERA, body, made, plan_photos_once, tern, terrain
 from tests.missions.worlds import World, world
@@ -117,7 +118,7 @@ def test_the_plans_own_poses_show_what_a_plan_of_photos_promises(here: World, cl
     assert (found["camera"], found["gsd_mm"], found["asset"]) == (CAMERA.name, 2.0, here.towers[2].pk)
 
 
-@pytest.mark.parametrize("camera", [TURNING, CAMERA], ids=["nose", "gimbal of 90 degrees to each side"])
+@pytest.mark.parametrize("camera", [*long(TURNING), CAMERA], ids=["nose", "gimbal of 90 degrees to each side"])
 def test_photos_flown_in_wind_show_what_was_promised(here: World, client: Client, person: User, camera: Camera) -> None:
     mission = planned(client, photographed(here.towers[2], camera), camera=camera)
     rehearsal = rehearsed(mission, person, "calm", "strong-wind")

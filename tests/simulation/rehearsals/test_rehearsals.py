@@ -1,8 +1,9 @@
 """A mission is rehearsed by a worker: flown whole, judged, kept; what belongs to another plan says nothing of this one."""
 
+from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import replace
 from datetime import timedelta
-from pathlib import Path
 from unittest import mock
 
 import pytest
@@ -26,11 +27,12 @@ from simulation.services.plan_to_fly import content_of, plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal, reasons_without_rehearsal, set_rule
 from simulation.tasks import rehearse_mission
 from tests.accounts.users import client_of
+from tests.cases import RowsForAModule
 from tests.inspection.ground import tower
 from tests.missions import worlds
 from tests.missions.api import post
 from tests.missions.flights import an_operator, fleet, ground, planned
-from tests.missions.worlds import World, world, zone_around
+from tests.missions.worlds import World, zone_around
 from tests.simulation.rehearsals.rehearsed import asked, loaded, rehearsed
 from workspace.models import AuditEntry, JobState, User
 
@@ -42,11 +44,15 @@ def person() -> User:
     return an_operator()
 
 
+@pytest.fixture(scope="module")
+def over_ground(world_of_the_module: World, rows_for_a_module: RowsForAModule, tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    with rows_for_a_module(lambda: ground(tmp_path_factory.mktemp("ground") / "ground.tif")):
+        yield world_of_the_module
+
+
 @pytest.fixture
-def here(tmp_path: Path) -> World:
-    found = world()
-    ground(tmp_path / "ground.tif")
-    return found
+def here(over_ground: World, db: None) -> World:
+    return deepcopy(over_ground)
 
 
 @pytest.fixture

@@ -20,6 +20,7 @@ from missions.services.commands.dispatch import abort_mission
 from planning.task import Task, TaskKind
 from telemetry.models import Capture, InspectionResult, TelemetryRecord, UavLink
 from telemetry.views.uav_authentication import UavRate
+from tests.cases import long
 from tests.missions.flights import an_operator, dispatched
 from tests.missions.worlds import UAV_AT, World, world
 from tests.telemetry.links.simulated_link import Flight, nothing_lost_or_doubled
@@ -87,7 +88,7 @@ def test_photos_are_reported_once_also_after_a_lost_link(
     assert flight.journal.waiting("captures", 10) == flight.journal.refused("captures") == []
 
 
-@pytest.mark.parametrize("down_s", [5, 60, pytest.param(600, marks=pytest.mark.long)])
+@pytest.mark.parametrize("down_s", [5, *long(60, 600)])
 @pytest.mark.parametrize("answers_only", [False, True], ids=["no request arrives", "no answer arrives"])
 def test_a_uav_without_a_link_flies_on_asks_again_at_once_and_loses_nothing(flight: Flight, down_s: int, answers_only: bool) -> None:
     flight.take_off()
@@ -174,7 +175,7 @@ def test_a_companion_that_crashes_at_any_request_loses_nothing(flight: Flight, s
 ERRORS = [Answer(500), Answer(503, None, {"retry-after": "2"}), Answer(429, None, {"retry-after": "7"}), Answer(401)]
 
 
-@pytest.mark.parametrize("answer", ERRORS, ids=lambda answer: str(answer.status))
+@pytest.mark.parametrize("answer", [*ERRORS[1::2], *long(*ERRORS[::2])], ids=lambda answer: str(answer.status))
 def test_a_server_that_answers_with_an_error_is_asked_again_and_nothing_is_lost(flight: Flight, answer: Answer) -> None:
     flight.take_off()
     ill_at_s = flight.now_s

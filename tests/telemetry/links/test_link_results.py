@@ -10,16 +10,11 @@ from missions.services.commands.outbox import queue_command
 from telemetry.models import InspectionResult, UavLink
 from telemetry.selectors.watched import watched_flights
 from tests.missions.flights import an_operator, approved, dispatched
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from tests.telemetry.links.uav_clients import UavClient, linked_uav, report, seconds_ago
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -17,17 +17,12 @@ from missions.services.missions import MissionChange, MissionFrozen, change_miss
 from telemetry.models import Alert
 from tests.missions.commands.outbox import lose
 from tests.missions.flights import an_operator, approved, dispatched
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World
 from tests.telemetry.links.uav_clients import UavClient, linked_uav
 from workspace import prepared_statements
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
 
 
 @pytest.fixture

@@ -42,6 +42,7 @@ def headers(document: Any, name: str, status: str) -> set[str]:
     return {reference["$ref"].rpartition("/")[2] for reference in described.values()}
 
 
+@pytest.mark.long
 def test_the_document_passes_the_validator_of_its_standard(document: Any) -> None:
     validate(document)
 
@@ -82,6 +83,7 @@ def test_the_document_is_valid_and_without_a_warning() -> None:
     call_command("spectacular", "--validate", "--fail-on-warn", stdout=StringIO())
 
 
+@pytest.mark.long
 def test_a_generator_of_types_takes_the_whole_document_without_a_word(document: Any, tmp_path: Path) -> None:
     source, types = tmp_path / "openapi.json", tmp_path / "types.d.ts"
     source.write_text(json.dumps(document))

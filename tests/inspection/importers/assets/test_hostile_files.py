@@ -436,7 +436,7 @@ def test_files_with_flipped_bytes_raise_nothing_that_is_not_told(tmp_path: Path)
             archive.writestr(name, content)
     path = tmp_path / "flipped"
     for whole in (buffer.getvalue(), geopackage(tmp_path / "a.gpkg").read_bytes()):
-        for at in range(0, len(whole), max(1, len(whole) // 400)):
+        for at in range(0, len(whole), max(1, len(whole) // 200)):
             data = bytearray(whole)
             data[at] ^= 0x55
             path.write_bytes(data)

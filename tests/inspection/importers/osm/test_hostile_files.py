@@ -45,36 +45,36 @@ def plain_blob(data):
 
 HEADER = blob(b"OSMHeader", field(4, b"OsmSchema-V0.6") + field(4, b"DenseNodes"))
 
-HOSTILE = {
-    "blob that says it unpacks to 2 GiB": HEADER + blob(b"OSMData", b"x" * 100, raw_size=2 * 1024**3),
-    "first blob that says it unpacks to 2 GiB": blob(b"OSMHeader", b"x" * 100, raw_size=2 * 1024**3),
-    "blob header above 64 KiB": HEADER + blob(b"OSMData", b"x", header_padding=b"\0" * 65_536),
-    "blob header of 4 GiB": b"\xff\xff\xff\xff" + b"A" * 100,
-    "blob longer than the file": HEADER + blob(b"OSMData", b"x" * 1_000)[:-5],
-    "blob that unpacks to more than it says": HEADER + blob(b"OSMData", b"\0" * 30_000_000, raw_size=1_000),
-    "blob of noise": HEADER + blob(b"OSMData", bytes(range(256)) * 40),
-    "tag with a null character": HEADER + blob(b"OSMData", field(1, field(1, b"") + field(1, b"po\0er") + field(1, b"tower"))),
-    "blob packed with another method": HEADER + other_blob(field(4, b"lzma")),
-    "30 kB of millions of empty fields": HEADER + blob(b"OSMData", b"\x0a\x00" * 15_000_000),
-    "30 kB of one table of millions of empty texts": HEADER + blob(b"OSMData", field(1, b"\x0a\x00" * 15_000_000)),
-    "millions of empty fields, not packed": HEADER + plain_blob(b"\x0a\x00" * 15_000_000),
-    "one table of millions of empty texts, not packed": HEADER + plain_blob(field(1, b"\x0a\x00" * 15_000_000)),
-    "blob of millions of fields": HEADER + other_blob(b"\x10\x00" * 15_000_000),
-    "header alone cut off": HEADER[:10],
-    "only nulls": b"\0" * 1_000_000,
-    "gzip bomb": gzip.compress(b"<osm version='0.6'>" + b" " * 200_000_000),
-    "bzip2 bomb": bz2.compress(b"<osm version='0.6'>" + b" " * 100_000_000),
-    "gzip in gzip": gzip.compress(gzip.compress(b"<osm version='0.6'></osm>")),
-    "gzip cut off": gzip.compress(b"<osm version='0.6'>" + bytes(range(33, 60)) * 1_000)[:-50],
-    "endless tag": b"<osm version='0.6'><node id='1' " + b"a" * 5_000_000,
-    "json of one endless element": b'{"elements": [{"a": "' + b"a" * 40_000_000,
+HOSTILE = {  # made by the test that needs it: some take seconds and hundreds of megabytes
+    "blob that says it unpacks to 2 GiB": lambda: HEADER + blob(b"OSMData", b"x" * 100, raw_size=2 * 1024**3),
+    "first blob that says it unpacks to 2 GiB": lambda: blob(b"OSMHeader", b"x" * 100, raw_size=2 * 1024**3),
+    "blob header above 64 KiB": lambda: HEADER + blob(b"OSMData", b"x", header_padding=b"\0" * 65_536),
+    "blob header of 4 GiB": lambda: b"\xff\xff\xff\xff" + b"A" * 100,
+    "blob longer than the file": lambda: HEADER + blob(b"OSMData", b"x" * 1_000)[:-5],
+    "blob that unpacks to more than it says": lambda: HEADER + blob(b"OSMData", b"\0" * 30_000_000, raw_size=1_000),
+    "blob of noise": lambda: HEADER + blob(b"OSMData", bytes(range(256)) * 40),
+    "tag with a null character": lambda: HEADER + blob(b"OSMData", field(1, field(1, b"") + field(1, b"po\0er") + field(1, b"tower"))),
+    "blob packed with another method": lambda: HEADER + other_blob(field(4, b"lzma")),
+    "30 kB of millions of empty fields": lambda: HEADER + blob(b"OSMData", b"\x0a\x00" * 15_000_000),
+    "30 kB of one table of millions of empty texts": lambda: HEADER + blob(b"OSMData", field(1, b"\x0a\x00" * 15_000_000)),
+    "millions of empty fields, not packed": lambda: HEADER + plain_blob(b"\x0a\x00" * 15_000_000),
+    "one table of millions of empty texts, not packed": lambda: HEADER + plain_blob(field(1, b"\x0a\x00" * 15_000_000)),
+    "blob of millions of fields": lambda: HEADER + other_blob(b"\x10\x00" * 15_000_000),
+    "header alone cut off": lambda: HEADER[:10],
+    "only nulls": lambda: b"\0" * 1_000_000,
+    "gzip bomb": lambda: gzip.compress(b"<osm version='0.6'>" + b" " * 200_000_000),
+    "bzip2 bomb": lambda: bz2.compress(b"<osm version='0.6'>" + b" " * 100_000_000),
+    "gzip in gzip": lambda: gzip.compress(gzip.compress(b"<osm version='0.6'></osm>")),
+    "gzip cut off": lambda: gzip.compress(b"<osm version='0.6'>" + bytes(range(33, 60)) * 1_000)[:-50],
+    "endless tag": lambda: b"<osm version='0.6'><node id='1' " + b"a" * 5_000_000,
+    "json of one endless element": lambda: b'{"elements": [{"a": "' + b"a" * 40_000_000,
 }
 
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_hostile_file_is_refused_before_it_costs_much(name, tmp_path):
     path = tmp_path / "hostile.osm.pbf"
-    path.write_bytes(HOSTILE[name])
+    path.write_bytes(HOSTILE[name]())
     before_kib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with no_runaway(), pytest.raises(OsmFileError):
         read_osm(path)
