@@ -13,11 +13,13 @@ from django.core.cache import cache
 
 from inspection.models import Asset
 from inspection.selectors.planning import DatasetVersion, terrain_at
+from missions.models import Route, Waypoint
 from missions.selectors.tower_sites import TowerOnMap, tower_on_map
 from operation.reasons import Reason, reason_from_json
 from operation.version import VERSION as PROGRAM_VERSION
 from planning.context import ResolvedTarget
-from planning.task import ViewPattern, ViewsRequest, views_to_json
+from planning.task import ViewPattern, ViewsRequest, task_from_json, views_to_json
+from planning.views.camera import Camera
 from planning.views.detail_views import TooManyPhotos
 from planning.views.limits import DetailRules
 from planning.views.photo_flight import GroundUnknown, PhotoFlight, photo_flight
@@ -121,3 +123,14 @@ def _kept(key: str) -> PhotoFlight | Reason | None:
 def _keep(key: str, flight: PhotoFlight | Reason) -> None:
     with contextlib.suppress(*CACHE_UNAVAILABLE):
         cache.set(key, {"reason": flight.to_json()} if isinstance(flight, Reason) else {"flight": flight.to_json()}, KEPT_S)
+
+
+def planned_cameras(routes: Sequence[Route]) -> dict[int, list[Camera]]:
+    """Return the cameras of the photos that each of the routes takes, by the route's key; none of a route without photos."""
+    rows = Waypoint.objects.filter(route__in=routes, target__task__has_key="views").values_list("route_id", "target__task").distinct()
+    found: dict[int, list[Camera]] = {}
+    for route, value in rows:
+        task = task_from_json(value)
+        if task is not None and task.views is not None and task.views.camera not in found.setdefault(route, []):
+            found[route].append(task.views.camera)
+    return found

@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, AutopilotType
 from mavlink.decoding.boots import Stamp, VehicleTime
+from mavlink.decoding.cameras import CameraReader
 from mavlink.decoding.captures import CaptureDecoder
 from mavlink.decoding.measurement import LinkQuality
 from mavlink.decoding.missing_photos import MissingPhotos
@@ -145,6 +146,7 @@ class Session:
     log: Callable[[bytes, int, float], None] | None = None
     is_unsaved: bool = False
     message_requests: MessageRequests = field(default_factory=MessageRequests)
+    cameras: CameraReader = field(default_factory=CameraReader)
     lists: ListWatch = field(default_factory=ListWatch)
     rate: LinkRate = field(default_factory=LinkRate)
     commanded_s: float | None = None  # monotonic time of the last command
@@ -191,6 +193,7 @@ class Session:
         if message is not None and frame.component == AUTOPILOT:
             self._take(message, now_s)
         if message is not None:
+            self.cameras.receive(message, time.monotonic())
             self._note_photo(message, now_s)
 
     def _count_loss(self, cause: str) -> None:
@@ -291,7 +294,8 @@ class Session:
         if is_within(self.last_message_s, now_s, SENDER_SILENT_S):
             has_position = is_within(self._position_s, now_s, POSITIONS_MISSING_S)
             due = self.message_requests.due(self.state, time.monotonic(), has_position=has_position)
-            self.send([*due, *self._missing_photos.requests(self.uav.system, time.monotonic())], now_s)
+            system, monotonic_s = self.uav.system, time.monotonic()
+            self.send([*due, *self.cameras.requests(system, monotonic_s), *self._missing_photos.requests(system, monotonic_s)], now_s)
 
     # State
 
@@ -323,10 +327,16 @@ class Session:
             signing=self._signing(),
             losses=dict(self.losses),
             limits=(self.lease.limits if self.lease else {}) | self.limits,
+            cameras=self._cameras(),
             battery_state=state.battery_state,
             received_bytes_s=rate.bytes_s,
             received_messages_s=rate.messages_s,
         )
+
+    def _cameras(self) -> list[dict[str, Any]]:
+        """Return what the vehicle's cameras state of themselves, or stated to the gateway before."""
+        stated = [camera.to_json() for camera in self.cameras.cameras]
+        return stated or (self.lease.cameras if self.lease else [])
 
     def _signing(self) -> dict[str, Any]:
         signing = self.authentication.to_json()

@@ -59,6 +59,9 @@ class UavLink(models.Model):
         help_text="what it would not fly, by its parameters' names [m]; see mavlink/mission_sync/limits.py",
     )
 
+    cameras = models.JSONField(
+        default=list, db_default=[], blank=True, help_text="what its cameras state of themselves; see mavlink/decoding/cameras.py"
+    )
     battery_state = models.CharField(
         max_length=20, default="", db_default="", blank=True, help_text="as the vehicle itself has it: ok, low, critical, …"
     )

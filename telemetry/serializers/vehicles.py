@@ -74,6 +74,18 @@ class GatewayAddressSerializer(serializers.Serializer):
     is_local = serializers.BooleanField(help_text="reachable from the gateway's own machine alone")
 
 
+class ReportedCameraSerializer(serializers.Serializer):
+    """What a camera of a UAV states of itself (CAMERA_INFORMATION of MAVLink); null is unknown."""
+
+    component = serializers.IntegerField(help_text="of the vehicle that stated it")
+    name = serializers.CharField(allow_blank=True, help_text="vendor and model")
+    focal_length_mm = serializers.FloatField(allow_null=True, help_text="of a zoom at any of its steps")
+    sensor_width_mm = serializers.FloatField(allow_null=True)
+    sensor_height_mm = serializers.FloatField(allow_null=True)
+    pixels_wide = serializers.IntegerField(allow_null=True)
+    pixels_high = serializers.IntegerField(allow_null=True)
+
+
 class UavConnectionSerializer(serializers.Serializer):
     """State of a UAV's link; null or empty if unknown."""
 
@@ -99,6 +111,7 @@ class UavConnectionSerializer(serializers.Serializer):
     loaded_doubt = serializers.ChoiceField(
         choices=[(doubt.value, doubt.value) for doubt in Doubt], allow_blank=True, help_text="why it may hold something else by now"
     )
+    cameras = ReportedCameraSerializer(many=True, help_text="by MAVLink only")
     server = serializers.CharField(help_text="base address of the HTTP link")
     gateway = GatewayAddressSerializer(many=True, help_text="where vehicles that speak MAVLink connect; empty: no gateway")
     server_time = serializers.DateTimeField(help_text="to tell an age by, whatever the reader's clock says")
@@ -127,5 +140,6 @@ def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
         "loaded_flight": link.loaded_flight,
         "loaded_read_at": link.loaded_read_at,
         "loaded_doubt": link.loaded_doubt,
+        "cameras": link.cameras,
         "server_time": now,
     }

@@ -12,16 +12,19 @@ import numpy as np
 from django.conf import settings
 from django.utils import timezone
 from django.utils.dateparse import parse_datetime
+from django.utils.formats import number_format
 from django.utils.translation import get_language
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import distance_m
 from inspection.selectors import ground_revision
+from mavlink.decoding.cameras import CameraDifference, ReportedCamera, camera_differences
 from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
 from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
 from missions.selectors.commands import upload_of
 from missions.selectors.fleet import incomplete_uavs, performance_of
 from missions.selectors.missions import approval_in_force, mission_of_organisation
+from missions.selectors.photo_flights import planned_cameras
 from missions.services.approval.checks import check_approval
 from missions.services.commands.dispatch import TO_SEND
 from missions.services.commands.planned_starts import routes_not_begun, uavs_being_started
@@ -29,6 +32,7 @@ from missions.services.commands.refused import RefusalReason
 from missions.services.commands.rtl_check import ReturnCheck, ReturnState, return_checks
 from missions.services.commands.start_slots import reasons_to_wait
 from operation.reasons import Reason
+from planning.views.camera import Camera
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import down_off_plan
 from telemetry.services.alerts.approved_flights import approved_content
@@ -116,7 +120,12 @@ def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
     read_at = tuple(None if route.mission_uav.uav is None else route.mission_uav.uav.autopilot_return_read_at for route in routes)
     found = _checked_on_the_map(mission.organisation_id, mission.pk, mission.revision, ground_revision(), read_at, get_language(), period)
     down = down_off_plan([route.mission_uav.uav_id for route in routes if route.mission_uav.uav_id is not None])
-    rows = tuple(_uav_preflight(uav, route, approval, found, down, now) for route in routes if (uav := route.mission_uav.uav) is not None)
+    cameras = planned_cameras(routes)
+    rows = tuple(
+        _uav_preflight(uav, route, approval, found, down, cameras.get(route.pk, []), now)
+        for route in routes
+        if (uav := route.mission_uav.uav) is not None
+    )
     own = tuple(_against(found.reasons, None))
     clear = Check("ground", CheckState.OK, _("No zone in force and nothing on the ground is in the way"))
     return Preflight(_next_act(rows), own if found.reasons else (clear,), rows)
@@ -175,7 +184,9 @@ def _against(reasons: Sequence[RefusalReason], place: int | None) -> Iterator[Ch
     return (Check(reason.code, CheckState.FAILED, reason.message) for reason in reasons if reason.uav == place)
 
 
-def _uav_preflight(uav: Uav, route: Route, approval: Approval, found: _OnTheMap, down: Collection[int], now: datetime) -> UavPreflight:
+def _uav_preflight(
+    uav: Uav, route: Route, approval: Approval, found: _OnTheMap, down: Collection[int], cameras: Sequence[Camera], now: datetime
+) -> UavPreflight:
     place = route.mission_uav
     link, watch = getattr(uav, "connection", None) or UavLink(uav=uav), getattr(uav, "watch", None)
     reported: Reported = (watch.measured if watch is not None else None) or {}
@@ -184,7 +195,7 @@ def _uav_preflight(uav: Uav, route: Route, approval: Approval, found: _OnTheMap,
     checks = (
         *_crash(uav, down), *_incomplete(uav, place.name), _link(link, reported, now), _position(route, reported), _home(uav, route, link),
         _battery(uav, route, reported, now), onboard, *_fence(uav, place.name, approval, link),
-        *_returns(found.returns.get(place.sequence)), _wind(route.mission, reported),
+        *_returns(found.returns.get(place.sequence)), *_cameras(uav, link, cameras), _wind(route.mission, reported),
         *(_others(uav, route, now) if is_loaded else ()), *_against(found.reasons, place.sequence),
     )  # fmt: skip
     return UavPreflight(uav.pk, place.name, place.sequence, is_loaded, checks)
@@ -309,6 +320,30 @@ def _returns(check: ReturnCheck | None) -> Iterator[Check]:
         words = _("Return at %(metres)s m is clear") % {"metres": f"{check.height_m:.0f}"}
     if words:
         yield Check("return", states.get(check.state, CheckState.UNKNOWN), words, check.safe_height_m, check.detail)
+
+
+def _cameras(uav: Uav, link: UavLink, planned: Sequence[Camera]) -> Iterator[Check]:
+    """Compare what its cameras state of themselves with each camera of its photos; no check without photos."""
+    stated = [one for value in link.cameras if (one := ReportedCamera.from_json(value)).has_figures]
+    for camera in planned:
+        values = {"camera": camera.name}
+        if stated and (found := min((camera_differences(one, camera) for one in stated), key=len)):
+            words = _("Its camera is not the planned one, %(camera)s: %(differences)s. Photos may not show what was planned.")
+            yield Check("camera", CheckState.WARNING, words % (values | {"differences": ", ".join(map(_difference, found))}))
+        elif stated:
+            yield Check("camera", CheckState.OK, _("Camera as planned: %(camera)s") % values)
+        elif uav.link == LinkKind.MAVLINK:
+            yield Check("camera", CheckState.UNKNOWN, _("It does not report its camera; planned: %(camera)s.") % values)
+
+
+def _difference(one: CameraDifference) -> str:
+    words = {
+        "focal_length": _("focal length %(reported)s mm instead of %(planned)s mm"),
+        "sensor": _("sensor %(reported)s mm instead of %(planned)s mm"),
+        "pixels": _("%(reported)s pixels instead of %(planned)s"),
+    }[one.figure]
+    reported, planned = (" × ".join(number_format(round(value, 1)) for value in values) for values in (one.reported, one.planned))
+    return words % {"reported": reported, "planned": planned}
 
 
 def _wind(mission: Mission, reported: Reported) -> Check:

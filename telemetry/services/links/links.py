@@ -24,7 +24,7 @@ UNREACHABLE_S = 5.0  # if a holder has not received the vehicle for so long, ano
 
 @dataclass(frozen=True)
 class Lease:
-    """A lease with the previous gateway's state: `signing`, `boots`, `losses` and `limits` as in UavLink.
+    """A lease with the previous gateway's state: `signing`, `boots`, `losses`, `limits` and `cameras` as in UavLink.
 
     `mode_in_air` is the vehicle's last mode if it was armed and in the air, else empty. `mission_item` is the item at that time, as the
     vehicle counts.
@@ -36,6 +36,7 @@ class Lease:
     losses: dict[str, int]
     loaded_sha256: str
     limits: dict[str, float] = field(default_factory=dict)
+    cameras: list[dict[str, Any]] = field(default_factory=list)
     mode_in_air: str = ""
     mission_item: int | None = None
 
@@ -65,6 +66,7 @@ class LinkState:
     signing: dict[str, Any] = field(default_factory=dict)
     losses: dict[str, int] = field(default_factory=dict)
     limits: dict[str, float] = field(default_factory=dict)
+    cameras: list[dict[str, Any]] = field(default_factory=list)
     waypoint_sequence: int | None = None
     vehicle_type: int | None = None
     battery_state: str = ""
@@ -107,6 +109,7 @@ def _lease_of(link: UavLink) -> Lease:
         losses=link.losses,
         loaded_sha256=link.loaded_sha256,
         limits=link.limits,
+        cameras=link.cameras,
         mode_in_air=link.mode if was_in_air else "",
         mission_item=link.mission_item,
     )
@@ -114,7 +117,7 @@ def _lease_of(link: UavLink) -> Lease:
 
 _TYPES = {
     "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4", "waypoint_sequence": "int4", "vehicle_type": "int2",
-    "boots": "jsonb", "signing": "jsonb", "losses": "jsonb", "limits": "jsonb",
+    "boots": "jsonb", "signing": "jsonb", "losses": "jsonb", "limits": "jsonb", "cameras": "jsonb",
     "address": "text", "autopilot": "text", "firmware": "text", "mode": "text", "battery_state": "text",
 }  # fmt: skip
 _COLUMNS = {column.name: _TYPES.get(column.name, "float8") for column in fields(LinkState)}

@@ -1,13 +1,15 @@
 """Checks before start: what is ready, what blocks, and which act comes next."""
 
 from datetime import timedelta
+from pathlib import Path
 from typing import Any
 
 import pytest
 from django.utils import timezone
 
-from missions.models import CommandKind, Mission, MissionState, PlannedStarts, Uav
+from missions.models import CommandKind, LinkKind, Mission, MissionState, PlannedStarts, Uav
 from missions.selectors.missions import mission_of_organisation
+from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.outbox import note_failed
 from missions.services.commands.refused import Refused
@@ -21,6 +23,7 @@ from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import an_operator, approved, carry, fleet
+from tests.missions.photo_missions import CAMERA, body, made, tern, terrain
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.records import received
 from workspace.models import AuditEntry, Organisation, Role, User
@@ -276,7 +279,8 @@ def test_polls_of_one_period_check_the_map_once(two: tuple[Mission, Uav, Uav], d
     received(tern, kite)
     checks(mission)
     loaded = mission_of_organisation(mission.organisation, mission.pk)
-    with django_assert_max_num_queries(8):  # approval, starts under way, routes with UAVs, crashes, ground, and an upload of each UAV
+    # Approval, starts under way, routes with UAVs, crashes, ground, cameras of photos, and an upload of each UAV.
+    with django_assert_max_num_queries(9):
         preflight_of(loaded, now=timezone.now())
 
 
@@ -304,3 +308,50 @@ def test_a_uav_that_lacks_its_type_does_not_start_and_says_what_is_missing(two: 
     answer = begins(person, mission, tern)
     assert answer.status_code == 409
     assert "Tern is incomplete: it has no type. Choose one on its page." in answer.content.decode()
+
+
+@pytest.fixture
+def photos(person: User, tmp_path: Path) -> tuple[Mission, Uav]:
+    """An approved mission with an overview of a tower."""
+    towers = world(height_m=30.0).towers
+    terrain(tmp_path)
+    uav = tern()
+    views = {"gsd_mm": 50, "camera_key": "dji-m30t-zoom", "pattern": "overview"}
+    asked = body({"asset": towers[2].pk, "task": {"kind": "photo", "views": views}}, uav=uav)
+    mission = mission_of_organisation(person.organisation, made(client_of(person), asked)["id"])
+    approve_mission(mission=mission, actor=person)
+    return mission, uav
+
+
+STATED = {
+    "component": 100, "name": "DJI M30T", "focal_length_mm": CAMERA.focal_lengths_mm[-1], "sensor_width_mm": CAMERA.sensor_width_mm,
+    "sensor_height_mm": CAMERA.sensor_height_mm, "pixels_wide": CAMERA.pixels_wide, "pixels_high": CAMERA.pixels_high,
+}  # fmt: skip
+WITHOUT_FIGURES = STATED | dict.fromkeys(("focal_length_mm", "sensor_width_mm", "sensor_height_mm", "pixels_wide", "pixels_high"))
+
+
+def test_the_camera_of_photos_is_as_planned_another_or_not_reported(photos: tuple[Mission, Uav]) -> None:
+    mission, uav = photos
+    other = STATED | {"pixels_wide": 640, "pixels_high": 512}
+    Uav.objects.filter(pk=uav.pk).update(link=LinkKind.MAVLINK)
+    link = UavLink.objects.create(uav=uav)
+    cases = {
+        CheckState.UNKNOWN: [[], [WITHOUT_FIGURES]],
+        CheckState.OK: [[STATED], [other, STATED]],
+        CheckState.WARNING: [[other], [other, WITHOUT_FIGURES]],
+    }
+    for state, reports in cases.items():
+        for cameras in reports:
+            link.cameras = cameras
+            link.save()
+            assert states(checks(mission), uav)["camera"] == state, cameras
+    (row,) = checks(mission).uavs
+    words = next(check.message for check in row.checks if check.code == "camera")
+    assert f"640 × 512 pixels instead of {CAMERA.pixels_wide} × {CAMERA.pixels_high}" in words and CAMERA.name in words
+    assert not row.blocks or "camera" not in [check.code for check in row.checks if check.state == CheckState.FAILED]
+
+
+def test_without_photos_no_camera_is_checked(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern_, _kite = two
+    UavLink.objects.create(uav=tern_, cameras=[STATED])
+    assert "camera" not in states(checks(mission), tern_)
