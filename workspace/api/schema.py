@@ -5,7 +5,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from drf_spectacular.openapi import AutoSchema
-from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer
+from drf_spectacular.plumbing import get_doc
+from drf_spectacular.utils import OpenApiExample, OpenApiParameter, PolymorphicProxySerializer
 from rest_framework.permissions import SAFE_METHODS
 
 from workspace.api.errors import PROBLEM_JSON
@@ -23,6 +24,11 @@ def several_of(values: Iterable[str]) -> dict[str, Any]:
     """Return the schema of a query parameter with a comma-separated list of these values."""
     one = "|".join(map(re.escape, values))
     return {"type": "string", "pattern": f"^({one})?(,({one})?)*$"}
+
+
+def request_example(value: Any) -> OpenApiExample:
+    """Return an example of a body, for one whose required fields alone say little."""
+    return OpenApiExample("request", value=value, request_only=True)
 
 
 PAGE_PARAMETERS = [
@@ -80,14 +86,21 @@ class SpanwiseSchema(AutoSchema):
             _name_headers(response, self._headers_of(status))
         return operation
 
+    def get_description(self) -> str:  # type: ignore[override]  # as in drf-spectacular
+        """Return no docstring of a view's class, which is for readers of the code; `extend_schema` states descriptions."""
+        return get_doc(getattr(self.view, self.method.lower(), None))
+
     def _get_request_for_media_type(self, serializer: Any, direction: Any = "request") -> Any:
         """Require a body of several shapes for POST; drf-spectacular does so only for single shapes."""
         schema, is_required = super()._get_request_for_media_type(serializer, direction)
         return schema, is_required or (self.method == "POST" and isinstance(serializer, PolymorphicProxySerializer))
 
     def _map_basic_serializer(self, serializer: Any, direction: Any) -> dict[str, Any]:
-        """Forbid other fields in a body whose serializer refuses them."""
+        """Forbid other fields in a body whose serializer refuses them, and leave out descriptions of base classes."""
         schema: dict[str, Any] = super()._map_basic_serializer(serializer, direction)
+        kind = serializer if isinstance(serializer, type) else type(serializer)
+        if not vars(kind).get("__doc__"):
+            schema.pop("description", None)
         if direction == "request" and getattr(serializer, "refuses_other_fields", False):
             schema["additionalProperties"] = False
         return schema
