@@ -13,6 +13,7 @@ from workspace.api.errors import PROBLEM_JSON
 from workspace.api.headers import HEADERS_OF_ERRORS
 from workspace.api.idempotency import MAX_KEY_LENGTH, TAKES_KEY
 from workspace.api.paging import LIMIT
+from workspace.api.permissions import InTheBrowserAlone
 from workspace.jobs.serializers import ErrorSerializer
 
 TIME = {"type": "string", "format": "date-time"}
@@ -86,6 +87,12 @@ class SpanwiseSchema(AutoSchema):
             _name_headers(response, self._headers_of(status))
         return operation
 
+    def get_auth(self) -> list[dict[str, Any]]:
+        """Leave out the token where it is refused."""
+        schemes: list[dict[str, Any]] = super().get_auth()
+        is_refused = self.method not in SAFE_METHODS and _is_for_browsers(self.view)
+        return [scheme for scheme in schemes if not is_refused or "bearerToken" not in scheme]
+
     def get_description(self) -> str:  # type: ignore[override]  # as in drf-spectacular
         """Return no docstring of a view's class, which is for readers of the code; `extend_schema` states descriptions."""
         return get_doc(getattr(self.view, self.method.lower(), None))
@@ -135,6 +142,10 @@ class SpanwiseSchema(AutoSchema):
             names += ["Location"] if status in {"201", "202"} else []
             names += ["Idempotency-Replayed"] if self._takes_key() else []
         return names
+
+
+def _is_for_browsers(view: Any) -> bool:
+    return any(isinstance(each, type) and issubclass(each, InTheBrowserAlone) for each in view.permission_classes)
 
 
 def name_etags(result: dict[str, Any], **_: Any) -> dict[str, Any]:

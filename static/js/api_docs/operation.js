@@ -18,7 +18,7 @@ import { describedValues, nameOf, resolved, shapesOf, typeText } from "./schema.
  */
 export function operationDetails(api, path, method) {
   const operation = api.paths[path][method];
-  const request = exampleRequest(api, path, method);
+  const ways = (operation.security ?? []).flatMap(Object.keys);
   const body = Object.entries(operation.requestBody?.content ?? {})[0];
   return h(
     "div",
@@ -28,18 +28,24 @@ export function operationDetails(api, path, method) {
       { class: "api-facts" },
       operation.deprecated && h("p", { class: "notice warning" }, icon("triangle-alert"), t("Deprecated")),
       operation.description && h("p", { lang: "en" }, inline(operation.description)),
-      "SPANWISE_UAV_TOKEN" === request.token && h("p", { class: "caption" }, t("Requires the link token of a UAV.")),
+      ways.includes("uavToken") && h("p", { class: "caption" }, t("Requires the link token of a UAV.")),
+      !takesToken(ways) && h("p", { class: "caption" }, t("Only in a signed-in browser: tokens are refused.")),
       part(t("Parameters"), parameterList(api, operation.parameters ?? [])),
       body && part(t("Request body"), bodyOf(api, body[0], body[1].schema)),
       part(t("Responses"), answers(api, operation)),
     ),
-    h(
-      "div",
-      { class: "api-example" },
-      h("h4", {}, t("Example")),
-      codeSample({ curl: asCurl(location.origin, request), python: asPython(location.origin, request) }),
-    ),
+    takesToken(ways) && example(api, path, method),
   );
+}
+
+/** Whether a program may call it. @param {string[]} ways to authenticate */
+const takesToken = (ways) => ways.includes("bearerToken") || ways.includes("uavToken");
+
+/** @param {Api} api @param {string} path @param {string} method */
+function example(api, path, method) {
+  const request = exampleRequest(api, path, method);
+  const texts = { curl: asCurl(location.origin, request), python: asPython(location.origin, request) };
+  return h("div", { class: "api-example" }, h("h4", {}, t("Example")), codeSample(texts));
 }
 
 /** @param {string} title @param {Child} content nothing where there is none */
@@ -58,14 +64,14 @@ function parameterList(api, parameters) {
     { class: "api-fields" },
     parameters.map((one) => {
       const schema = { ...one.schema, description: one.description ?? one.schema.description };
-      return field(api, { name: one.name, schema, isRequired: one.required === true, place: one.in });
+      return field(api, { name: one.name, schema, isRequired: one.required === true, place: one.in }, true);
     }),
   );
 }
 
 /** @param {Api} api @param {string} mediaType @param {Schema} schema */
 function bodyOf(api, mediaType, schema) {
-  const inside = fieldsOf(api, schema);
+  const inside = fieldsOf(api, schema, true);
   return [h("p", { class: "caption" }, mediaType, inside ? "" : ` · ${typeText(api, schema)}`), inside];
 }
 
@@ -74,8 +80,9 @@ function bodyOf(api, mediaType, schema) {
  *
  * @param {Api} api
  * @param {{ name: string, schema: Schema, isRequired: boolean, place?: string }} of
+ * @param {boolean} marksRequired as in requests: in responses nearly every field is there
  */
-function field(api, { name, schema, isRequired, place = "" }) {
+function field(api, { name, schema, isRequired, place = "" }, marksRequired) {
   const whole = resolved(api, schema);
   const { words, values } = describedValues(whole);
   return h(
@@ -86,14 +93,14 @@ function field(api, { name, schema, isRequired, place = "" }) {
       { class: "api-field" },
       h("code", { class: "api-name" }, name),
       h("span", { class: "api-type", lang: "en" }, place ? `${place} · ` : "", typeText(api, schema)),
-      isRequired && h("span", { class: "chip draft" }, t("required")),
+      marksRequired && isRequired && h("span", { class: "chip draft" }, t("required")),
       whole.deprecated && h("span", { class: "chip aborted" }, t("deprecated")),
     ),
     words && h("p", { lang: "en" }, inline(words)),
     values.length > 0 && h("p", { class: "api-values", lang: "en" }, values.map(valueText)),
     whole.default !== undefined &&
       h("p", { class: "caption" }, t("Default: {value}", { value: JSON.stringify(whole.default) })),
-    opened(api, whole),
+    opened(api, whole, marksRequired),
   );
 }
 
@@ -103,13 +110,15 @@ function valueText({ value, words }, place) {
   return [place ? " · " : "", h("code", {}, value), says];
 }
 
-/** The fields of an object, or of the objects of a list, behind a line that opens them. @param {Api} api @param {Schema} schema */
-function opened(api, schema) {
+/** The fields of an object, or of the objects of a list, behind a line that opens them. @param {Api} api @param {Schema} schema @param {boolean} marksRequired */
+function opened(api, schema, marksRequired) {
   const inner = schema.type === "array" && schema.items ? resolved(api, schema.items) : schema;
   const shapes = shapesOf(inner).filter((one) => hasFields(resolved(api, one)));
   if (!hasFields(inner) && !shapes.length) return null;
   const details = h("details", { class: "api-inside" }, h("summary", {}, t("Fields")));
-  details.addEventListener("toggle", () => details.append(...listed(fieldsOf(api, inner))), { once: true });
+  details.addEventListener("toggle", () => details.append(...listed(fieldsOf(api, inner, marksRequired))), {
+    once: true,
+  });
   return details;
 }
 
@@ -119,8 +128,8 @@ const listed = (child) => /** @type {Node[]} */ ([child].flat().filter(Boolean))
 /** @param {Schema} schema */
 const hasFields = ({ properties }) => properties !== undefined && Object.keys(properties).length > 0;
 
-/** @param {Api} api @param {Schema} schema @returns {Child} */
-function fieldsOf(api, schema) {
+/** @param {Api} api @param {Schema} schema @param {boolean} marksRequired @returns {Child} */
+function fieldsOf(api, schema, marksRequired) {
   const whole = resolved(api, schema);
   const inner = whole.type === "array" && whole.items ? resolved(api, whole.items) : whole;
   const shapes = shapesOf(inner);
@@ -131,7 +140,7 @@ function fieldsOf(api, schema) {
         { class: "caption" },
         t("Variant {number} of {count}", { number: `${place + 1}`, count: `${shapes.length}` }),
       ),
-      fieldsOf(api, shape) ?? h("p", { class: "api-type", lang: "en" }, typeText(api, shape)),
+      fieldsOf(api, shape, marksRequired) ?? h("p", { class: "api-type", lang: "en" }, typeText(api, shape)),
     ]);
   if (!hasFields(inner)) return null;
   const { properties = {}, required = [] } = inner;
@@ -139,7 +148,7 @@ function fieldsOf(api, schema) {
     "ul",
     { class: "api-fields" },
     Object.entries(properties).map(([name, each]) =>
-      field(api, { name, schema: each, isRequired: required.includes(name) }),
+      field(api, { name, schema: each, isRequired: required.includes(name) }, marksRequired),
     ),
   );
 }
@@ -194,6 +203,6 @@ function answerRow(api, status, { description, content = {}, headers = {} }) {
         { class: "api-errors" },
         names.map(({ name, words }) => [h("dt", {}, h("code", {}, name)), h("dd", { lang: "en" }, inline(words))]),
       ),
-    schema && types[0].endsWith("json") && opened(api, resolved(api, schema)),
+    schema && types[0].endsWith("json") && opened(api, resolved(api, schema), false),
   );
 }

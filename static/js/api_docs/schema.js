@@ -59,6 +59,7 @@ const OF_FORMAT = {
   email: "name@example.org",
   uri: "https://example.org/",
 };
+const SO_LARGE_THAT_IT_SAYS_NOTHING = 999_999_999; // of ids
 /** In the order in which they are tried where a pattern is stated. */
 const OF_PATTERNS = ["text", "1", "a", HASH, "00", "Europe/Berlin"];
 
@@ -75,7 +76,7 @@ export function resolved(api, schema) {
 /** The kinds of a schema with several shapes; else none. @param {Schema} schema @returns {Schema[]} */
 export const shapesOf = ({ oneOf, anyOf }) => oneOf ?? anyOf ?? [];
 
-/** A type in short, in the words of JSON Schema: "array of integer, 1 to 20 items". @param {Api} api @param {Schema} schema @returns {string} */
+/** A type in short, in the words of JSON Schema: "array of integer, 1…20 items". @param {Api} api @param {Schema} schema @returns {string} */
 export function typeText(api, schema) {
   const whole = resolved(api, schema);
   const several = shapesOf(whole);
@@ -96,10 +97,11 @@ function plainType(api, schema) {
 function limitsOf({ minimum, maximum, exclusiveMinimum, minLength, maxLength, minItems, maxItems }) {
   /** @param {number | undefined} least @param {number | undefined} most @param {string} unit @param {string} [sign] */
   const range = (least, most, unit, sign = "≥") => {
-    if (least === undefined && most === undefined) return [];
-    if (least === undefined) return [`≤ ${most}${unit}`];
-    if (most === undefined) return [`${sign} ${least}${unit}`];
-    return [sign === ">" ? `> ${least}, ≤ ${most}${unit}` : `${least}–${most}${unit}`];
+    const isBounded = most !== undefined && most < SO_LARGE_THAT_IT_SAYS_NOTHING;
+    if (least === undefined) return isBounded ? [`≤ ${most}${unit}`] : [];
+    if (!isBounded) return [`${sign} ${least}${unit}`];
+    if (least === most) return [`${least}${unit}`];
+    return [sign === ">" ? `> ${least}, ≤ ${most}${unit}` : `${least}…${most}${unit}`];
   };
   return [
     ...range(minimum, maximum, "", exclusiveMinimum ? ">" : "≥"),

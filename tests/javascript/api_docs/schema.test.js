@@ -18,9 +18,14 @@ const api = /** @type {any} */ ({
 });
 
 test("a type is told in short, with its limits", () => {
-  assert.equal(typeText(api, { type: "integer", minimum: 1, maximum: 20, nullable: true }), "integer, 1–20 | null");
+  assert.equal(typeText(api, { type: "integer", minimum: 1, maximum: 20, nullable: true }), "integer, 1…20 | null");
   assert.equal(typeText(api, { type: "number", minimum: 0, exclusiveMinimum: true, maximum: 5 }), "number, > 0, ≤ 5");
   assert.equal(typeText(api, { type: "number", minimum: 0, exclusiveMinimum: true }), "number, > 0");
+  assert.equal(typeText(api, { type: "integer", minimum: 1, maximum: 2 ** 63 }), "integer, ≥ 1");
+  assert.equal(
+    typeText(api, { type: "array", items: { type: "number" }, minItems: 2, maxItems: 2 }),
+    "array of number, 2 items",
+  );
   assert.equal(typeText(api, { type: "string", format: "uuid", maxLength: 36 }), "string (uuid), ≤ 36 chars");
   assert.equal(
     typeText(api, { type: "array", items: { $ref: "#/components/schemas/Node" }, minItems: 1 }),

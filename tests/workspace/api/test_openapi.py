@@ -69,6 +69,15 @@ def test_answers_name_their_headers(document: Any) -> None:
     assert headers(document, "list_missions", "503") == {"Retry-After"}
 
 
+def test_operations_that_refuse_tokens_do_not_name_them(document: Any) -> None:
+    def ways(name: str) -> set[str]:
+        return {way for ways in operation(document, name)["security"] for way in ways}
+
+    assert ways("make_token") == ways("change_password") == {"cookieAuth"}
+    assert ways("list_tokens") == {"cookieAuth", "bearerToken"}
+    assert ways("report_telemetry") == {"uavToken"}
+
+
 def test_every_error_has_a_body_that_is_described(document: Any) -> None:
     for methods in document["paths"].values():
         for each in methods.values():
