@@ -3,6 +3,7 @@
 import os
 from typing import Any
 
+from config.openapi_tags import root_extensions, tags
 from results.categories import BY_CODE
 from workspace.api.headers import HEADERS
 
@@ -23,8 +24,8 @@ def openapi_settings() -> dict[str, Any]:
         "POSTPROCESSING_HOOKS": ["drf_spectacular.hooks.postprocess_schema_enums", "workspace.api.schema.name_etags"],
         "APPEND_COMPONENTS": {"headers": HEADERS},
         "SERVE_INCLUDE_SCHEMA": False,
-        "SWAGGER_UI_DIST": "SIDECAR",
-        "SWAGGER_UI_FAVICON_HREF": "SIDECAR",
+        "TAGS": tags(),
+        "EXTENSIONS_ROOT": root_extensions(),
         "SCHEMA_PATH_PREFIX": r"/api/v1",
         "COMPONENT_SPLIT_REQUEST": True,
         "ENUM_NAME_OVERRIDES": {

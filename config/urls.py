@@ -2,15 +2,15 @@
 
 from django.contrib import admin
 from django.urls import URLPattern, URLResolver, include, path
-from drf_spectacular.views import SpectacularSwaggerSplitView
 
 from workspace.api.api_document import api_document
+from workspace.api.api_page import ApiPage
 
 admin.autodiscover()
 urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("missions.urls")),  # first, as the most frequent: URLs are tried in order
     path("api/schema", api_document, name="schema"),
-    path("api/docs", SpectacularSwaggerSplitView.as_view(template_name="api_docs.html"), name="api-docs"),
+    path("api/docs", ApiPage.as_view(), name="api-docs"),
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("accounts.urls")),
     path("api/v1/", include("inspection.urls")),

@@ -48,7 +48,7 @@ def named_in_templates(pattern: re.Pattern[str]) -> set[str]:
 
 
 def test_every_script_and_style_sheet_of_a_page_is_a_bundle(storage: StaticFiles) -> None:
-    named = named_in_templates(PAGE_SCRIPT) | named_in_templates(PAGE_STYLES) - {"css/api-docs.css"}
+    named = named_in_templates(PAGE_SCRIPT) | named_in_templates(PAGE_STYLES)
     assert len(named) > 25
     assert {name for name in named if not storage.url(name).startswith("/static/bundles/")} == set()
 

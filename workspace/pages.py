@@ -16,13 +16,13 @@ from workspace.api.signed_in import SignedInPageRequest
 from workspace.sessions.browser_sessions import seconds_left
 
 
-class SignedInPage(LoginRequiredMixin, TemplateView):
-    """An HTML shell for an authenticated user."""
-
-    request: SignedInPageRequest
+class OpenPage(TemplateView):
+    """An HTML shell for everybody, in the frame of the pages; `page` is empty without a user."""
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
+        if not user.is_authenticated:
+            return super().get_context_data(**kwargs) | {"page": {}}
         page = {
             "userId": user.pk, "organisationId": user.organisation_id, "userName": user.username, "role": user.role,
             "canPlan": user.can_plan, "canCurate": user.can_curate,
@@ -33,6 +33,12 @@ class SignedInPage(LoginRequiredMixin, TemplateView):
     def page(self, **kwargs: Any) -> dict[str, Any]:
         """Return what the page's script needs before its first request."""
         return {}
+
+
+class SignedInPage(LoginRequiredMixin, OpenPage):
+    """An HTML shell for an authenticated user."""
+
+    request: SignedInPageRequest
 
 
 def raster_maps() -> dict[str, Any]:

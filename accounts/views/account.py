@@ -145,7 +145,7 @@ class AccountTokens(APIView):
     @extend_schema(
         operation_id="make_token",
         summary="Make a token; only this answer shows it",
-        description="Not with a token, and within 15 min of saying one's password.",
+        description="Not with a token, and within 15 min of saying one's password. A repeated request makes another token.",
         request=TokenInputSerializer,
         responses={201: NewTokenSerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many that work.")},
     )

@@ -123,7 +123,7 @@ class ServiceAccountTokens(APIView):
     @extend_schema(
         operation_id="make_service_account_token",
         summary="Make a token of an account for a program; only this answer shows it",
-        description="Not with a token, and within 15 min of saying one's password.",
+        description="Not with a token, and within 15 min of saying one's password. A repeated request makes another token.",
         request=TokenInputSerializer,
         responses={201: NewTokenSerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many that work.")},
     )

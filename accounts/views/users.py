@@ -238,6 +238,7 @@ class InvitationList(APIView):
     @extend_schema(
         operation_id="invite",
         summary="Make a link for a new account; only this answer shows it",
+        description="A repeated request makes another link.",
         request=InvitationInputSerializer,
         responses={201: NewInvitationSerializer, 403: LOCAL_SIGN_IN_OFF},
     )

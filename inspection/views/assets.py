@@ -26,11 +26,12 @@ from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_choice, asked_flag, changed_since, page_of
 from workspace.api.permissions import CURATORS
 from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS
-from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
+from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, request_example
 from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
 BEST_FIRST = ("match_rank", "pk")
+TOWER_EXAMPLE = {"kind": "tower", "ref": "T 17", "height_m": 42, "geometry": {"type": "Point", "coordinates": [9.52, 47.14]}}
 EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}
 
 
@@ -84,6 +85,7 @@ class AssetList(APIView):
         summary="Draw an asset",
         request=AssetInputSerializer,
         responses={201: AssetDetailFeatureSerializer} | EXTERNAL_ID_TAKEN,
+        examples=[request_example(TOWER_EXAMPLE)],
     )
     @idempotent
     def post(self, request: SignedInRequest) -> Response:

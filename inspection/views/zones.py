@@ -16,8 +16,14 @@ from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_choice, changed_since, page_of
 from workspace.api.permissions import CURATORS
 from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS
-from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
+from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, request_example
 from workspace.api.signed_in import SignedInRequest
+
+ZONE_EXAMPLE = {
+    "name": "Crane",
+    "circle": {"centre": [9.52, 47.14], "radius_m": 200},
+    "upper_limit": {"value_m": 120, "reference": "AGL"},
+}
 
 
 class ZoneList(APIView):
@@ -44,7 +50,11 @@ class ZoneList(APIView):
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 
     @extend_schema(
-        operation_id="create_zone", summary="Draw a no-fly zone", request=ZoneInputSerializer, responses={201: ZoneDetailFeatureSerializer}
+        operation_id="create_zone",
+        summary="Draw a no-fly zone",
+        request=ZoneInputSerializer,
+        responses={201: ZoneDetailFeatureSerializer},
+        examples=[request_example(ZONE_EXAMPLE)],
     )
     @idempotent
     def post(self, request: SignedInRequest) -> Response:

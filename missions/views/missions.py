@@ -34,7 +34,7 @@ from missions.serializers import inputs, shapes
 from missions.serializers.changes import HistoryEntrySerializer, HistoryPageSerializer
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import Charging, Departure, MissionChange
-from missions.views.plans import effort_of, is_small, job_answer, planning_job
+from missions.views.plans import PLAN_EXAMPLE, effort_of, is_small, job_answer, planning_job
 from missions.views.problems import api_problems
 from planning.task import task_from_json
 from workspace.api.errors import ApiProblem
@@ -42,7 +42,7 @@ from workspace.api.external_data import EXTERNAL_ID, asked_external_id
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_flag, asked_instant, changed_since, page_of
 from workspace.api.preconditions import need_if_match
-from workspace.api.schema import CHANGED_SINCE, DAY_OR_TIME, PAGE_PARAMETERS, several_of
+from workspace.api.schema import CHANGED_SINCE, DAY_OR_TIME, PAGE_PARAMETERS, request_example, several_of
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
 from workspace.api.whole_numbers import WholeNumber
@@ -217,6 +217,7 @@ class MissionList(_PlansWhenAsked):
         summary="Create a mission, and plan it if asked",
         request=inputs.MissionInputSerializer,
         responses={201: shapes.MissionSerializer, **PLANNED_LATER},
+        examples=[request_example({"name": "Line inspection", **PLAN_EXAMPLE, "plan": True})],
     )
     @idempotent
     def post(self, request: SignedInRequest) -> Response:

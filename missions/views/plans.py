@@ -23,6 +23,7 @@ from planning.task import Task
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.renderers import FastJSONRenderer
+from workspace.api.schema import request_example
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
 from workspace.api.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
@@ -32,6 +33,10 @@ from workspace.reason_texts import with_message
 from workspace.tasks import send_job_on_commit
 
 PHOTOS_EFFORT = 6  # planning the photos of a target takes as long as so many targets
+PLAN_EXAMPLE = {
+    "uavs": [{"name": "Kestrel 1", "position": [9.52, 47.14]}],
+    "targets": [{"position": [9.53, 47.15]}, {"position": [9.55, 47.15]}],
+}
 SOLVE_PLAN = "missions.tasks.solve_plan"
 JOBS_RETRY_AFTER_S = 10
 STATUS_OF_FAILURE = {
@@ -81,6 +86,7 @@ class PlanList(APIView):
         parameters=[PREFER],
         request=PlanInputSerializer,
         responses={200: PlanSerializer, 202: OpenApiResponse(JobLinkSerializer, description="A job plans it; see Location.")},
+        examples=[request_example(PLAN_EXAMPLE)],
     )
     def post(self, request: Request) -> Response:
         response = self._answer(request)

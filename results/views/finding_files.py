@@ -71,7 +71,13 @@ class FindingFile(APIView):
     content_negotiation_class = OneAnswer
     throttle_scope = "exports"
 
-    @extend_schema(operation_id="export_findings", summary="Findings as CSV or GeoJSON", parameters=[KIND, *FILTERS], responses=FILES)
+    @extend_schema(
+        operation_id="export_findings",
+        summary="Findings as CSV or GeoJSON",
+        tags=["findings"],
+        parameters=[KIND, *FILTERS],
+        responses=FILES,
+    )
     def get(self, request: SignedInRequest, kind: str) -> StreamingHttpResponse:
         media_type, pieces = KINDS[kind]
         findings = findings_that_match(request.user.organisation_id, asked_findings(request))

@@ -47,7 +47,6 @@ export interface components {
             /** Format: date-time */
             readonly last_login: string | null;
         };
-        /** @description What photos show. The camera counts as level, with the planned focal length. */
         AchievedCoverage: {
             /** @description that count */
             photos: number;
@@ -55,7 +54,6 @@ export interface components {
             coverage: components["schemas"]["ViewCoverage"];
             deviations: components["schemas"]["Deviation"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         AcknowledgementInputRequest: {
             /** @default  */
             note: string;
@@ -84,7 +82,6 @@ export interface components {
          * @enum {string}
          */
         AcknowledgementStateEnum: "acknowledged" | "applied" | "failed";
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         AcknowledgementsRequest: {
             acknowledgements: components["schemas"]["AcknowledgementRequest"][];
         };
@@ -275,7 +272,6 @@ export interface components {
             /** Format: date-time */
             written_at: string;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         AlertNoteInputRequest: {
             text: string;
         };
@@ -402,7 +398,6 @@ export interface components {
             /** @description routes with their flights and items, zones, conditions, ground, lost link, separation, figures of UAVs: as approved */
             document: unknown;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ApproveInputRequest: {
             /**
              * Format: double
@@ -685,7 +680,6 @@ export interface components {
         BatchAnswers: {
             results: components["schemas"]["BatchAnswer"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         BatchInputRequest: {
             /** @default  */
             why: string;
@@ -1078,7 +1072,6 @@ export interface components {
             /** @description of the picture, as the camera names it */
             file_url: string;
         };
-        /** @description A camera body with one lens, on a gimbal. */
         CatalogueCamera: {
             name: string;
             /** Format: double */
@@ -1195,7 +1188,6 @@ export interface components {
             /** Format: double */
             radius_m: number;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CloseInputRequest: {
             /** @description why each target that is still open is left */
             reasons?: components["schemas"]["OpenTargetReasonRequest"][];
@@ -1213,7 +1205,6 @@ export interface components {
              */
             at_s: number;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ClosingInputRequest: {
             /** @description what became of the UAV; kept as a note */
             reason: string;
@@ -1304,7 +1295,6 @@ export interface components {
             /** Format: date-time */
             recorded_at: string;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CommandInputRequest: {
             /** @default  */
             why: string;
@@ -1349,7 +1339,6 @@ export interface components {
             results: components["schemas"]["Command"][];
             next: string | null;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CommandParametersRequest: {
             /**
              * Format: double
@@ -1492,7 +1481,6 @@ export interface components {
             /** Format: date-time */
             revoked_at: string | null;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CredentialInputRequest: {
             /** @description administrators alone: why it is done although the UAV flies or something is on its way to it */
             insist_reason?: string;
@@ -1664,7 +1652,6 @@ export interface components {
             /** @default  */
             note: string;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         DispatchInputRequest: {
             /** @default  */
             why: string;
@@ -1720,7 +1707,6 @@ export interface components {
         EndedAlerts: {
             results: components["schemas"]["EndedAlertOutcome"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         EndedAlertsInputRequest: {
             /** @description ids of those that were seen */
             alerts: number[];
@@ -2339,7 +2325,6 @@ export interface components {
              */
             unreported_m: number;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         FollowUpRequest: {
             /** @description without one: the name with “follow-up” */
             name?: string;
@@ -2629,7 +2614,6 @@ export interface components {
             used_wh: number[] | null;
             battery_left_percent: number[] | null;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         HandRouteRequest: {
             waypoints: components["schemas"]["HandPointRequest"][];
         };
@@ -3036,7 +3020,6 @@ export interface components {
             /** @description stretches [from, to] of the route away from the network [m] */
             off_network: number[][];
         };
-        /** @description A target as it was picked. */
         LastStop: {
             asset: number | null;
             /**
@@ -3095,7 +3078,6 @@ export interface components {
         LegChecks: {
             legs: components["schemas"]["LegCheck"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegChecksInputRequest: {
             legs: components["schemas"]["LegRequest"][];
             /**
@@ -3111,7 +3093,6 @@ export interface components {
             /** @description its place in that mission */
             uav?: number | null;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegEndRequest: {
             /**
              * @description lon, lat [deg], WGS84
@@ -3129,7 +3110,6 @@ export interface components {
              */
             arrival_s?: number | null;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegRequest: {
             start: components["schemas"]["LegEndRequest"];
             end: components["schemas"]["LegEndRequest"];
@@ -3160,7 +3140,6 @@ export interface components {
             /** @description that the routes meet in space and height, at whatever time */
             zones: components["schemas"]["BlockingZone"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegalWindowsInputRequest: {
             /** @description of a plan, as it was answered */
             routes: components["schemas"]["TimedRouteRequest"][];
@@ -3859,7 +3838,6 @@ export interface components {
             name: string;
             missions: number;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         MissionCopyRequest: {
             /** @description without one: the name with (copy) */
             name?: string;
@@ -3959,7 +3937,6 @@ export interface components {
             name: string;
             missions: number;
         };
-        /** @description Data that other systems may store with a mission. */
         MissionInputRequest: {
             uavs?: components["schemas"]["UavInputRequest"][];
             targets?: components["schemas"]["TargetInputRequest"][];
@@ -4176,7 +4153,6 @@ export interface components {
             /** @description meant for this mission alone, whatever becomes of the stored UAV */
             own_figures: components["schemas"]["UavFigure"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         MissionsBatchInputRequest: {
             /** @default  */
             why: string;
@@ -4200,7 +4176,6 @@ export interface components {
             done: string[];
             refused: components["schemas"]["RefusedMission"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         MissionsInputRequest: {
             missions: string[];
         };
@@ -4451,7 +4426,6 @@ export interface components {
          * @enum {string}
          */
         OfferState: "computing" | "open" | "accepted" | "declined" | "outdated" | "impossible";
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         OpenTargetReasonRequest: {
             /** @description its place in the mission */
             target: number;
@@ -4585,7 +4559,6 @@ export interface components {
             asset?: number | null;
             review?: components["schemas"]["Review"] | components["schemas"]["BlankEnum"];
         };
-        /** @description Data that other systems may store with a mission. */
         PatchedMissionPatchRequest: {
             uavs?: components["schemas"]["UavInputRequest"][];
             targets?: components["schemas"]["TargetInputRequest"][];
@@ -4667,7 +4640,6 @@ export interface components {
             /** @description false: none of its tokens works */
             is_active?: boolean;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PatchedSimulationChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
             conditions?: string | {
@@ -4833,7 +4805,6 @@ export interface components {
             /** @description whether they may sign in */
             is_active?: boolean;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PatchedVehicleChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
             conditions?: string | {
@@ -4883,7 +4854,6 @@ export interface components {
          * @enum {string}
          */
         Placement: "waiting" | "stated" | "captured" | "nearest" | "manual" | "unplaced";
-        /** @description Quality of a plan: a bound that no plan can be better than, and this plan's gap above it. */
         Plan: {
             /**
              * Format: double
@@ -5136,7 +5106,6 @@ export interface components {
          * @enum {string}
          */
         PointTypeEnum: "Point";
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PoolUavRequest: {
             /**
              * @description lon, lat [deg], WGS84
@@ -5217,7 +5186,6 @@ export interface components {
             ground_revision: number;
             uav_changes: components["schemas"]["UavChange"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PresenceInputRequest: {
             /** @description a name that the page made up for itself */
             editor: string;
@@ -5596,7 +5564,6 @@ export interface components {
             /** @description the base that it starts from; null: where it stands */
             base: string | null;
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ReasonInputRequest: {
             /** @description kept in the mission's history */
             reason: string;
@@ -6200,7 +6167,6 @@ export interface components {
             has_own_battery: boolean;
             words: string;
         };
-        /** @description What photos show. The camera counts as level, with the planned focal length. */
         RehearsedCoverage: {
             /** @description that count */
             photos: number;
@@ -6982,7 +6948,6 @@ export interface components {
             /** @description empty: all the time */
             schedule: components["schemas"]["ScheduleEntry"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ScopeRequest: {
             /** Format: uuid */
             mission: string;
@@ -7204,7 +7169,6 @@ export interface components {
          * @enum {string}
          */
         SimulatedAutopilotType: "px4" | "ardupilot";
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         SimulatedFlightsInputRequest: {
             /**
              * @description times real time
@@ -7302,7 +7266,6 @@ export interface components {
             step_timing: components["schemas"]["StepTiming"] | null;
             vehicles: components["schemas"]["SimulatedVehicle"][];
         };
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         SimulationInputRequest: {
             uavs: components["schemas"]["PoolUavRequest"][];
             /**
@@ -8805,7 +8768,6 @@ export interface components {
             /** @description no-fly zones that the flight would meet at some time: it cannot be flown then */
             zones: components["schemas"]["ViewPlanZone"][];
         };
-        /** @description Photos of every part, or of the whole from four sides: with which camera, and how fine. */
         ViewPlanInputRequest: {
             /**
              * @description detail, which is usual: every part; overview: the whole tower in each of four photos
@@ -8983,12 +8945,10 @@ export interface components {
          * @enum {string}
          */
         WhyEnum: "chosen" | "nearest";
-        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         WhyInputRequest: {
             /** @default  */
             why: string;
         };
-        /** @description A planning request. */
         WhyRouteInputRequest: {
             uavs: components["schemas"]["UavInputRequest"][];
             targets: components["schemas"]["TargetInputRequest"][];
@@ -9025,7 +8985,6 @@ export interface components {
              */
             shortest_ways: boolean;
         };
-        /** @description A planning request. */
         WhyTargetInputRequest: {
             uavs: components["schemas"]["UavInputRequest"][];
             targets: components["schemas"]["TargetInputRequest"][];
@@ -9177,7 +9136,6 @@ export interface components {
             geometry: components["schemas"]["Geometry"];
             properties: components["schemas"]["ZoneDetailProperties"];
         };
-        /** @description Facts as the source states them; null means "not stated". */
         ZoneDetailProperties: {
             name: string;
             identifier: string;

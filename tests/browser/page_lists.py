@@ -1,6 +1,6 @@
 """The addresses of the pages, by who may open them: what looks at every page looks at these."""
 
-FOR_STRANGERS = ("/sign-in", "/lost-password", "/lost-password/sent")
+FOR_STRANGERS = ("/sign-in", "/lost-password", "/lost-password/sent", "/api/docs")
 FOR_OPERATORS = (
     "/",
     "/missions/new",

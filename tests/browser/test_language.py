@@ -1,4 +1,4 @@
-"""The program in other languages: no English is left on any page, for the eye and for a screen reader."""
+"""The program in other languages: no English is left on any page, for the eye and for a screen reader, but what is marked as English."""
 
 import re
 from collections.abc import Callable
@@ -23,7 +23,7 @@ STATED = """() => {
         const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
         while (walker.nextNode()) {
             const { data, parentElement } = walker.currentNode;
-            if (!parentElement?.closest("script, style, code, kbd, [translate=no]")) add(data);
+            if (!parentElement?.closest("script, style, code, kbd, [translate=no], [lang=en]")) add(data);
         }
         for (const element of root.querySelectorAll("*")) {
             for (const name of ["aria-label", "title", "placeholder", "alt"]) add(element.getAttribute(name));

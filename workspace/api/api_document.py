@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from django.conf import settings
-from django.http import HttpRequest, HttpResponse
+from django.http import Http404, HttpRequest, HttpResponse
 from django.utils import translation
 from django.utils.cache import get_conditional_response
 from django.views.decorators.http import require_safe
@@ -55,8 +55,9 @@ class Document:
 
 @require_safe
 def api_document(request: HttpRequest) -> HttpResponse:
-    """Return the document in YAML, or in JSON on request, with an ETag; no login is needed."""
-    media_type = request.get_preferred_type(list(FORM_OF)) or "application/vnd.oai.openapi"
+    """Return the document in YAML, or in JSON if Accept or `?format=json` asks for it, with an ETag; no login is needed."""
+    media_type = _named_type(request.GET["format"]) if "format" in request.GET else request.get_preferred_type(list(FORM_OF))
+    media_type = media_type or "application/vnd.oai.openapi"
     document = stored(FORM_OF[media_type])
     is_packed = "gzip" in request.headers.get("Accept-Encoding", "")
     etag = f'"{document.sha256[:32]}{"-gz" if is_packed else ""}"'
@@ -67,6 +68,12 @@ def api_document(request: HttpRequest) -> HttpResponse:
         answer["Content-Encoding"] = "gzip"
     answer["ETag"], answer["Vary"], answer["Cache-Control"] = etag, "Accept, Accept-Encoding", "public, no-cache"
     return answer
+
+
+def _named_type(form: str) -> str:
+    if form not in FORMS:
+        raise Http404
+    return f"application/{form}"
 
 
 def stored(form: str) -> Document:

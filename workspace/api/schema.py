@@ -5,13 +5,15 @@ from collections.abc import Iterable
 from typing import Any
 
 from drf_spectacular.openapi import AutoSchema
-from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer
+from drf_spectacular.plumbing import get_doc
+from drf_spectacular.utils import OpenApiExample, OpenApiParameter, PolymorphicProxySerializer
 from rest_framework.permissions import SAFE_METHODS
 
 from workspace.api.errors import PROBLEM_JSON
 from workspace.api.headers import HEADERS_OF_ERRORS
 from workspace.api.idempotency import MAX_KEY_LENGTH, TAKES_KEY
 from workspace.api.paging import LIMIT
+from workspace.api.permissions import InTheBrowserAlone
 from workspace.jobs.serializers import ErrorSerializer
 
 TIME = {"type": "string", "format": "date-time"}
@@ -23,6 +25,11 @@ def several_of(values: Iterable[str]) -> dict[str, Any]:
     """Return the schema of a query parameter with a comma-separated list of these values."""
     one = "|".join(map(re.escape, values))
     return {"type": "string", "pattern": f"^({one})?(,({one})?)*$"}
+
+
+def request_example(value: Any) -> OpenApiExample:
+    """Return an example of a body, for one whose required fields alone say little."""
+    return OpenApiExample("request", value=value, request_only=True)
 
 
 PAGE_PARAMETERS = [
@@ -80,14 +87,27 @@ class SpanwiseSchema(AutoSchema):
             _name_headers(response, self._headers_of(status))
         return operation
 
+    def get_auth(self) -> list[dict[str, Any]]:
+        """Leave out the token where it is refused."""
+        schemes: list[dict[str, Any]] = super().get_auth()
+        is_refused = self.method not in SAFE_METHODS and _is_for_browsers(self.view)
+        return [scheme for scheme in schemes if not is_refused or "bearerToken" not in scheme]
+
+    def get_description(self) -> str:  # type: ignore[override]  # as in drf-spectacular
+        """Return no docstring of a view's class, which is for readers of the code; `extend_schema` states descriptions."""
+        return get_doc(getattr(self.view, self.method.lower(), None))
+
     def _get_request_for_media_type(self, serializer: Any, direction: Any = "request") -> Any:
         """Require a body of several shapes for POST; drf-spectacular does so only for single shapes."""
         schema, is_required = super()._get_request_for_media_type(serializer, direction)
         return schema, is_required or (self.method == "POST" and isinstance(serializer, PolymorphicProxySerializer))
 
     def _map_basic_serializer(self, serializer: Any, direction: Any) -> dict[str, Any]:
-        """Forbid other fields in a body whose serializer refuses them."""
+        """Forbid other fields in a body whose serializer refuses them, and leave out descriptions of base classes."""
         schema: dict[str, Any] = super()._map_basic_serializer(serializer, direction)
+        kind = serializer if isinstance(serializer, type) else type(serializer)
+        if not vars(kind).get("__doc__"):
+            schema.pop("description", None)
         if direction == "request" and getattr(serializer, "refuses_other_fields", False):
             schema["additionalProperties"] = False
         return schema
@@ -122,6 +142,10 @@ class SpanwiseSchema(AutoSchema):
             names += ["Location"] if status in {"201", "202"} else []
             names += ["Idempotency-Replayed"] if self._takes_key() else []
         return names
+
+
+def _is_for_browsers(view: Any) -> bool:
+    return any(isinstance(each, type) and issubclass(each, InTheBrowserAlone) for each in view.permission_classes)
 
 
 def name_etags(result: dict[str, Any], **_: Any) -> dict[str, Any]:

@@ -25,21 +25,26 @@ export function readPage() {
 
 /** @import { Binding } from "./keyboard.js" */
 
-/** Everywhere the same keys, and the page's own before them. @param {{ bindings?: Binding[] }} [own] */
+/** Everywhere the same keys, and the page's own before them; strangers have no places to go to. @param {{ bindings?: Binding[] }} [own] */
 export function startChrome({ bindings = [] } = {}) {
   /** @param {string} address */
   const go = (address) => () => {
     location.href = address;
   };
   /** @type {Binding[]} */
-  const all = [
-    ...bindings,
+  const places = [
     { keys: ["n"], words: readPage().canPlan ? t("New mission") : t("Go to the map"), act: go("/missions/new") },
     { keys: ["g m"], words: t("Go to the missions"), act: go("/") },
     { keys: ["g l"], words: t("Go to what flies"), act: go("/live") },
     { keys: ["g a"], words: t("Go to the assets"), act: go("/assets") },
     { keys: ["g z"], words: t("Go to the zones"), act: go("/zones") },
     { keys: ["g u"], words: t("Go to the UAVs"), act: go("/uavs") },
+  ];
+  const isSignedIn = readPage().userId !== undefined;
+  /** @type {Binding[]} */
+  const all = [
+    ...bindings,
+    ...(isSignedIn ? places : []),
     { keys: ["?"], words: t("Show the keys"), act: () => showKeys(all) },
   ];
   listenToKeys(all);
@@ -57,14 +62,19 @@ export function startChrome({ bindings = [] } = {}) {
   onTheme(label);
   label();
 
+  if (isSignedIn) startAccount(all);
+}
+
+/** What only users have: alerts, their menu, the session's end and offline copies. @param {Binding[]} bindings */
+function startAccount(bindings) {
   startBell();
   const account = byId("open-account");
-  account.addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
+  account.addEventListener("click", () => toggleMenu(account, () => accountMenu(bindings)));
   if (copiedAt === null) {
     watchSessionEnd(readPage().sessionEndsIn_s);
     keepForOffline(readPage());
   } else showCopyBanner(copiedAt);
-  byId("open-more").addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
+  byId("open-more").addEventListener("click", () => toggleMenu(account, () => accountMenu(bindings)));
 }
 
 /** @param {Binding[]} bindings */
