@@ -13,7 +13,7 @@ from inspection.importers.assets.gml import check_numbers
 from inspection.importers.assets.reference_systems import system_of_wkt
 from inspection.importers.assets.wkb import geometry_of_wkb
 from inspection.importers.gdal_process import GdalRefusal, gdal_process
-from inspection.importers.rows import MAX_ROWS, AssetFileError, Columns, RawRow, Source, plain_cell, refused, unique_names
+from inspection.importers.rows import MAX_ROWS, AssetFileError, Columns, RawRow, RowSource, plain_cell, refused, unique_names
 from inspection.importers.xml_root import leads_elsewhere, root_of
 from operation.reasons import Reason
 
@@ -42,7 +42,7 @@ def format_of_start(start: bytes) -> str:
 
 
 @contextmanager
-def gdal_file_source(path: Path, file_format: str, layer: str, *, has_system: bool) -> Iterator[Source]:
+def gdal_file_source(path: Path, file_format: str, layer: str, *, has_system: bool) -> Iterator[RowSource]:
     """Open a layer of a file. has_system: the user names the reference system. Raises AssetFileError."""
     with path.open("rb") as file:
         if file_format == "gml":
@@ -55,7 +55,7 @@ def has_geodatabase(archive: Archive) -> bool:
 
 
 @contextmanager
-def geodatabase_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[Source]:
+def geodatabase_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[RowSource]:
     """Open a layer of a zipped File Geodatabase. Raises AssetFileError."""
     folders = {PurePosixPath(name).parent for name in archive.names if PurePosixPath(name).name.lower() == _TABLE_OF_TABLES}
     if len(folders) > 1:
@@ -73,7 +73,7 @@ def geodatabase_source(archive: Archive, layer: str, *, has_system: bool) -> Ite
         yield _source("filegdb", files, layer, has_system=has_system)
 
 
-def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has_system: bool) -> Source:
+def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has_system: bool) -> RowSource:
     try:
         with gdal_process(_DRIVERS[file_format], files, layer=layer, most=0) as process:
             head = process.line()
@@ -86,7 +86,7 @@ def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has
     if head["wkt"] is None and not has_system:
         raise refused(name[:60], "the layer does not say in which reference system it is: name it, such as EPSG:2056")
     system = None if has_system else system_of_wkt(head["wkt"], name[:60])
-    return Source(
+    return RowSource(
         file_format, lambda: _rows(_DRIVERS[file_format], files, name, columns), crs=system, layer=name, layers=tuple(head["layers"]),
         columns=columns,
     )  # fmt: skip

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from inspection.importers.assets.reference_systems import system_of_code
-from inspection.importers.rows import MAX_ROW_CHARACTERS, Columns, RawRow, Source, plain_cell, refused
+from inspection.importers.rows import MAX_ROW_CHARACTERS, Columns, RawRow, RowSource, plain_cell, refused
 from inspection.importers.strict_json import JsonFault, parse_strict_json
 from operation.reasons import reason_of
 
@@ -28,12 +28,12 @@ def _refuse_constant(text: str) -> float:
 _DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
 
 
-def geojson_source(path: Path) -> Source:
+def geojson_source(path: Path) -> RowSource:
     """Open a FeatureCollection, a Feature or a bare geometry. Raises AssetFileError."""
     with path.open(encoding="utf-8-sig") as file:
         head = _head(file, path)
     stated = _CRS_NAME.search(head)
-    source = Source("geojson", lambda: _rows(path))
+    source = RowSource("geojson", lambda: _rows(path))
     if stated is not None:  # from the standard of 2008; some programs still write it
         source.crs = system_of_code(stated[1], "crs")
     return source
