@@ -8,7 +8,7 @@ from missions.hooks.in_air import uavs_on_the_ground
 from missions.models import CommandKind, UavCommand
 from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.staggered_returns import stuck_returns
-from telemetry.alerting.finding import ACTS, RETURN, acts
+from telemetry.alerting.detection import ACTS, RETURN, acts
 from telemetry.models import Alert, AlertLevel
 from telemetry.selectors.alert_words import outcome_values
 from telemetry.services.alerts.alerts import close_alert, open_alert
