@@ -55,7 +55,7 @@ def openapi_settings() -> dict[str, Any]:
             "AlertLevel": "telemetry.models.AlertLevel",
             "FindingState": ["open", "work_ordered", "done", "verified", "rejected"],
             "FindingCategory": list(BY_CODE),
-            "ObservationOutcome": "results.models.Outcome",
+            "ObservationOutcome": "results.models.ObservationOutcome",
             "SeveritySource": "results.models.SeveritySource",
             "MarkType": ["box", "polygon"],
             "MediumKind": "results.models.MediumKind",

@@ -5,8 +5,8 @@ from missions.selectors.resolved_targets import resolved_targets
 from missions.services.fleet.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet.rows import (
     FleetChanged,
+    FleetNameTaken,
     FleetRowInUse,
-    NameTaken,
     NotDeleted,
     SystemIdQuota,
     SystemIdTaken,
@@ -70,6 +70,7 @@ __all__ = [
     "Departure",
     "EditedPoint",
     "FleetChanged",
+    "FleetNameTaken",
     "FleetRowInUse",
     "GraphOutdated",
     "InvalidRequest",
@@ -77,7 +78,6 @@ __all__ = [
     "MissionChange",
     "MissionChanged",
     "MissionFrozen",
-    "NameTaken",
     "NotDeleted",
     "NothingToPlan",
     "PlanRequest",

@@ -50,7 +50,7 @@ PREFER = OpenApiParameter(
 )
 
 
-class Reachability(APIView):
+class ReachableAssets(APIView):
     write_roles = frozenset(Role)
     renderer_classes = [FastJSONRenderer]
     throttle_classes = [ScopedRate]

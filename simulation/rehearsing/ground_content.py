@@ -8,14 +8,14 @@ import numpy as np
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute
 from simulation.assessment.flown import FloatArray
-from simulation.assessment.judging import Surroundings
+from simulation.assessment.judging import AssessmentSurroundings
 
 BESIDE_DEG = 0.02  # some 2 km beside the waypoints, the range in which assessments report zones
 LOOK_EACH_M = 30.0  # sampling of heights along the routes
 DEGREE_DIGITS, METRE_DIGITS = 7, 1
 
 
-def ground_content(routes: Sequence[FrozenRoute], around: Surroundings) -> str:
+def ground_content(routes: Sequence[FrozenRoute], around: AssessmentSurroundings) -> str:
     """Return the SHA-256 of what an assessment of the routes uses; objects farther away do not change it."""
     hashed = hashlib.sha256()
     for part in (*_zones(routes, around), *_standing(around), _heights(routes, around)):
@@ -24,7 +24,7 @@ def ground_content(routes: Sequence[FrozenRoute], around: Surroundings) -> str:
     return hashed.hexdigest()
 
 
-def _zones(routes: Sequence[FrozenRoute], around: Surroundings) -> Iterator[bytes]:
+def _zones(routes: Sequence[FrozenRoute], around: AssessmentSurroundings) -> Iterator[bytes]:
     """Yield the zones independent of their names and order."""
     table, places = around.zones, _places(routes)
     (west, south), (east, north) = places.min(axis=0) - BESIDE_DEG, places.max(axis=0) + BESIDE_DEG
@@ -33,7 +33,7 @@ def _zones(routes: Sequence[FrozenRoute], around: Surroundings) -> Iterator[byte
     yield from sorted(table.wkb[row] + repr((tuple(table.limits[row]), table.schedules[row])).encode() for row in near)
 
 
-def _standing(around: Surroundings) -> Iterator[bytes]:
+def _standing(around: AssessmentSurroundings) -> Iterator[bytes]:
     standing = around.standing
     ends = np.round(np.hstack([standing.start, standing.end]), DEGREE_DIGITS)
     tops = np.round(np.column_stack([standing.start_top_m, standing.end_top_m]), METRE_DIGITS)
@@ -41,7 +41,7 @@ def _standing(around: Surroundings) -> Iterator[bytes]:
     yield rows[np.lexsort(rows.T[::-1])].tobytes()
 
 
-def _heights(routes: Sequence[FrozenRoute], around: Surroundings) -> bytes:
+def _heights(routes: Sequence[FrozenRoute], around: AssessmentSurroundings) -> bytes:
     found = around.ground_amsl_m(np.vstack([_along(route) for route in routes]))
     return (np.round(found, METRE_DIGITS) + 0.0).tobytes()
 

@@ -6,7 +6,7 @@ from inspection.network.spans import Spans, spans_of
 from inspection.selectors import NoGraph
 from inspection.selectors.planning import PlanningGround, heights_at
 from simulation.assessment.flown import FloatArray
-from simulation.assessment.judging import Surroundings
+from simulation.assessment.judging import AssessmentSurroundings
 from simulation.assessment.obstacles import Standing
 from simulation.rehearsing.ground import Heights
 from simulation.rehearsing.ground_content import ground_content
@@ -18,9 +18,9 @@ NO_PLACES = np.zeros((0, 2))
 NOTHING_STANDS = Standing(NO_PLACES, NO_PLACES, np.zeros(0), np.zeros(0))
 
 
-def surroundings_of(plan: PlanToFly, ground: PlanningGround) -> Surroundings:
+def surroundings_of(plan: PlanToFly, ground: PlanningGround) -> AssessmentSurroundings:
     terrain = heights_at(ground.dataset_version)
-    return Surroundings(ground.table, _standing(plan, ground, terrain), _flat if terrain is None else terrain, plan.departs_s)
+    return AssessmentSurroundings(ground.table, _standing(plan, ground, terrain), _flat if terrain is None else terrain, plan.departs_s)
 
 
 def ground_of_plan(plan: PlanToFly, ground: PlanningGround) -> str:

@@ -95,7 +95,7 @@ class FleetReport:
 
 
 @dataclass
-class Fleet:
+class SimulatedFleet:
     """The fleet. `speed` is simulated seconds per second. `post` may be called from any thread, all else from the running one."""
 
     uavs: Sequence[FlyingUav]

@@ -2,7 +2,7 @@
 
 from rest_framework import serializers
 
-from mavlink.decoding.captures import AttitudeSource, PositionSource, TimeSource
+from mavlink.decoding.captures import AttitudeSource, CaptureTimeSource, PositionSource
 from mavlink.decoding.gimbal_attitude import YawFrame
 from missions.serializers.uavs import PointSerializer
 
@@ -15,7 +15,7 @@ class CapturePropertiesSerializer(serializers.Serializer):
     mission = serializers.UUIDField(allow_null=True)
     taken_at = serializers.DateTimeField(help_text="by the server's clock")
     received_at = serializers.DateTimeField()
-    time_source = serializers.ChoiceField(choices=[(one.value, one.value) for one in TimeSource])
+    time_source = serializers.ChoiceField(choices=[(one.value, one.value) for one in CaptureTimeSource])
     time_bound_s = serializers.FloatField(allow_null=True)
     flight = serializers.IntegerField(allow_null=True, help_text="of the approved route, from 1")
     waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of the approved route")

@@ -29,7 +29,7 @@ OF_LINK = ("link", "mavlink_system_id", "is_simulated", "allows_unsigned")
 def create_uav(*, organisation: Organisation, actor: User, position: LonLat | None, values: dict[str, Any]) -> Uav:
     """Create a UAV. values has some of FIELDS, name among them, and optionally `base` and `uav_type`; its base supplies a missing position.
 
-    Raises NameTaken, ExternalIdTaken, SystemIdTaken or SystemIdQuota.
+    Raises FleetNameTaken, ExternalIdTaken, SystemIdTaken or SystemIdQuota.
     """
     uav = Uav(organisation=organisation)
     _put(uav, values)

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 from uuid import UUID
 
-from mavlink.decoding.captures import AttitudeSource, CaptureReport, CaptureSource, PositionSource, TimeSource
+from mavlink.decoding.captures import AttitudeSource, CaptureMessage, CaptureSource, CaptureTimeSource, PositionSource
 from mavlink.decoding.companion_reports import CompanionCapture, read_capture
 from mavlink.decoding.gimbal_attitude import YawFrame
 from missions.models import LinkKind
@@ -50,11 +50,11 @@ def _new(capture: CompanionCapture, uav_id: int, stream: str, received_at: datet
     waypoint = values.pop("waypoint_sequence", None)
     has_attitude = values.get("pitch_deg") is not None
     longitude_deg, latitude_deg = capture.position or (None, None)
-    report = CaptureReport(
+    report = CaptureMessage(
         CaptureSource.COMPANION,
         hashlib.sha256(f"companion {stream} {capture.sequence}".encode()).hexdigest()[:32],
         min(taken_s, received_s) if is_possible else received_s,
-        TimeSource.UAV if is_possible else TimeSource.RECEIPT,
+        CaptureTimeSource.UAV if is_possible else CaptureTimeSource.RECEIPT,
         longitude_deg=longitude_deg,
         latitude_deg=latitude_deg,
         position_source=None if capture.position is None else PositionSource.PHOTO,
