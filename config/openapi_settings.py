@@ -31,7 +31,7 @@ def openapi_settings() -> dict[str, Any]:
             "AssetKind": "inspection.models.AssetKind",
             "ImportKind": "inspection.models.ImportKind",
             "DataIssueKind": "inspection.models.DataIssueKind",
-            "WaypointKind": "missions.models.WaypointKind",
+            "WaypointKind": "missions.models.WAYPOINT_KINDS",
             "TaskKind": ["look", "photo", "hold"],
             "ViewPattern": ["detail", "overview"],
             "NotCountedReason": ["failed", "position", "height", "attitude", "tilted", "far"],

@@ -13,17 +13,17 @@ from missions.models.commands import (
 from missions.models.fleet import END_ACTIONS, Base, CredentialKind, LinkKind, Uav, UavCredential, UavState, UavType
 from missions.models.missions import (
     ENDED_STATES,
+    OBJECTIVES,
+    WAYPOINT_KINDS,
     InspectionTarget,
     Mission,
     MissionState,
     MissionUav,
-    Objective,
     Route,
     SavedSelection,
     TargetPriority,
     TargetState,
     Waypoint,
-    WaypointKind,
 )
 from missions.models.offers import OfferState, ReplanOffer
 from missions.models.starts import PlannedStarts, StartsEnd
@@ -31,7 +31,9 @@ from missions.models.starts import PlannedStarts, StartsEnd
 __all__ = [
     "ENDED_STATES",
     "END_ACTIONS",
+    "OBJECTIVES",
     "OPEN_COMMANDS",
+    "WAYPOINT_KINDS",
     "Approval",
     "Base",
     "CommandAxis",
@@ -44,7 +46,6 @@ __all__ = [
     "Mission",
     "MissionState",
     "MissionUav",
-    "Objective",
     "OfferState",
     "PlannedStarts",
     "ReplanOffer",
@@ -60,5 +61,4 @@ __all__ = [
     "UavState",
     "UavType",
     "Waypoint",
-    "WaypointKind",
 ]
