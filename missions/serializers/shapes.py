@@ -8,7 +8,7 @@ from missions.selectors.fleet import FIGURES
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
 from missions.serializers.view_plans import ViewSerializer, ViewsSerializer
-from planning.clearance.lost_link import LostLink, Trouble
+from planning.clearance.lost_link import LostLink, ReturnTrouble
 from planning.task import TaskKind
 from workspace.api.external_data import AttributesField
 from workspace.api.fields import WhySerializer
@@ -208,7 +208,7 @@ class FailedReturnSerializer(serializers.Serializer):
     route = serializers.IntegerField(help_text="index of the UAV")
     waypoint = serializers.IntegerField(help_text="its place in the route")
     return_point = serializers.IntegerField(help_text="where it would return to: 0 its start, n the n-th rally point")
-    trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
+    trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in ReturnTrouble])
     missing_wh = serializers.FloatField(allow_null=True)
     zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")
     zone_id = serializers.IntegerField(allow_null=True, required=False, help_text="its id; not there in checks of before")
