@@ -10,9 +10,8 @@ from mavlink.autopilot_type import AutopilotType
 from telemetry.alerting.conflicts import conflicts, elsewhere, ways_of
 from telemetry.alerting.detector_input import DetectorInput, WatchedUav
 from telemetry.alerting.detector_state import DetectorState, position_of
-from telemetry.alerting.detectors import down
+from telemetry.alerting.detectors import CODES, DETECTORS, down
 from telemetry.alerting.limits import AlertLimits, sound_limits
-from telemetry.alerting.order import CODES, DETECTORS
 from telemetry.alerting.state_machine import Closed, Opened, changes
 from telemetry.alerting.surroundings import LinkFacts, NearZone, OnboardState
 from telemetry.selectors.alert_facts import (

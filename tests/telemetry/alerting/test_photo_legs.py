@@ -15,7 +15,7 @@ from simulation.flight.flown import FlownFlightLog
 from simulation.rehearsing.weather_scenario import Named
 from telemetry.alerting.detection import CRITICAL, WARNING
 from telemetry.alerting.detector_input import WatchedUav
-from telemetry.alerting.order import DETECTORS
+from telemetry.alerting.detectors import DETECTORS
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.estimation.report import Report

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 from telemetry.alerting.detector_input import DetectorInput, WatchedUav
 from telemetry.alerting.detector_state import DetectorState
+from telemetry.alerting.detectors import DETECTORS
 from telemetry.alerting.limits import AlertLimits
-from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.state_machine import RANK, Closed, changes
 from telemetry.alerting.surroundings import OnboardState
 
