@@ -19,7 +19,7 @@ from mavlink.decoding.measurement import Measurement
 from operation import loop_heartbeats
 from operation.metrics import ESTIMATED_UAVS, ESTIMATOR_ERROR_M, ESTIMATOR_INNOVATIONS, ESTIMATOR_ROUND_SECONDS
 from telemetry.alerting.detector_input import WatchedUav
-from telemetry.estimation.innovation import innovation
+from telemetry.estimation.estimate import innovation
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
 from telemetry.selectors.watched import (
