@@ -13,10 +13,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, AutopilotType
+from mavlink.commands.message_requests import MissingPhotos
 from mavlink.decoding.boots import Stamp, VehicleTime
 from mavlink.decoding.captures import CaptureDecoder
 from mavlink.decoding.measurement import LinkQuality
-from mavlink.decoding.missing_photos import MissingPhotos
 from mavlink.decoding.report import FlownState, MeasurementDecoder, StatusText, TextCollector, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
 from mavlink.mission_sync.flown_items import FlightWatch, FlownMissionItem

@@ -8,10 +8,10 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
+from mavlink.commands.message_requests import MissingPhotos
 from mavlink.decoding.boots import VehicleTime
 from mavlink.decoding.captures import AttitudeSource, CaptureDecoder, CaptureMessage, CaptureTimeSource, PositionSource, combined
 from mavlink.decoding.gimbal_attitude import YawFrame, attitude_of_quaternion
-from mavlink.decoding.missing_photos import MissingPhotos
 from tests.mavlink.decoding.photos import (
     BOOTED_S,
     CAMERA,
