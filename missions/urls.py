@@ -12,13 +12,13 @@ from missions.views.approvals import (
     MissionNearestZone,
     MissionRevoke,
 )
-from missions.views.asset_missions import AssetMissions
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.coverage import MissionCoverage, MissionCoverageFile
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.manual_edits import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
+from missions.views.missions import AssetMissions
 from missions.views.plans import ReachableAssets
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.selections import SelectionDetail, SelectionList

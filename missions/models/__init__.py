@@ -7,6 +7,8 @@ from missions.models.commands import (
     CommandKind,
     CommandPriority,
     CommandState,
+    PlannedStarts,
+    StartsEnd,
     UavCommand,
     UavCommandEvent,
 )
@@ -26,7 +28,6 @@ from missions.models.missions import (
     Waypoint,
 )
 from missions.models.offers import OfferState, ReplanOffer
-from missions.models.starts import PlannedStarts, StartsEnd
 
 __all__ = [
     "ENDED_STATES",

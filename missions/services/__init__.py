@@ -41,8 +41,7 @@ from missions.services.missions import (
     restore_mission,
 )
 from missions.services.planning.explanations import explain_route, explain_unreached_target
-from missions.services.planning.planner import GraphOutdated, make_plan
-from missions.services.planning.warm_up import warm_up
+from missions.services.planning.planner import GraphOutdated, make_plan, warm_up
 from planning.assignment.options import refuse_contradictions
 from planning.plan_json import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
 from planning.request import (

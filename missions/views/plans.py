@@ -25,8 +25,8 @@ from workspace.api.idempotency import idempotent
 from workspace.api.renderers import FastJSONRenderer
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
-from workspace.api.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
 from workspace.jobs.services import TooManyJobs, create_job_within, refuse_jobs_beyond
+from workspace.jobs.views import NoRoomToWait, preferred_wait_s, wait_for_job
 from workspace.models import Job, JobState, Role, User
 from workspace.reason_texts import with_message
 from workspace.tasks import send_job_on_commit
