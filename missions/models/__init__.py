@@ -7,7 +7,9 @@ from missions.models.commands import (
     CommandKind,
     CommandPriority,
     CommandState,
+    OfferState,
     PlannedStarts,
+    ReplanOffer,
     StartsEnd,
     UavCommand,
     UavCommandEvent,
@@ -27,7 +29,6 @@ from missions.models.missions import (
     TargetState,
     Waypoint,
 )
-from missions.models.offers import OfferState, ReplanOffer
 
 __all__ = [
     "ENDED_STATES",
