@@ -32,7 +32,7 @@ from telemetry.selectors.watched import (
     watched_flights,
 )
 from telemetry.services.alerts.alerting import poll_alerts
-from telemetry.services.knowledge import knowledge_of
+from telemetry.services.approved_flights import knowledge_of
 from telemetry.services.targets_checked import LOOKBACK_S, TargetChecks
 from telemetry.services.watches import (
     Made,

@@ -24,10 +24,10 @@ from telemetry.selectors.alert_facts import (
     status_texts_of,
 )
 from telemetry.selectors.alerts import MIXED, OTHER_LIST, OpenRow, open_alerts_of
-from telemetry.services.alerts.approved_flights import approved_content, flight_model
 from telemetry.services.alerts.nearby_zones import ZonesAbout, zones_about
 from telemetry.services.alerts.replan_hooks import suggest_for_detections, withdraw_for_closed
 from telemetry.services.alerts.rows import close_alerts_of_ended_missions, settle
+from telemetry.services.approved_flights import approved_content, flight_model
 from telemetry.services.flown import note_down_off_plan
 from workspace.live.changes import publish_live
 

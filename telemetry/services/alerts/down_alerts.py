@@ -11,7 +11,7 @@ from telemetry.alerting.detectors import down
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alerts import BY_PERSON
 from telemetry.services.alerts.alerts import CLOSED, alert_was_closed, note_alert, open_alert, step
-from telemetry.services.alerts.approved_flights import flight_model
+from telemetry.services.approved_flights import flight_model
 from workspace.models import User
 
 

@@ -1,4 +1,4 @@
-"""Data of approved flights for detectors, computed once: an approval never changes."""
+"""Data of approved flights for detectors and for the estimator, computed once: an approval never changes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from missions.models import Approval
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load
-from planning.clearance.lost_link import LostLinkPlan
+from planning.clearance.lost_link import LostLink, LostLinkPlan
 from planning.energy.conditions import conditions_from_json
 from planning.energy.performance import performance_from_json
 from planning.request import lost_link_from_json
@@ -18,6 +18,7 @@ from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
+from telemetry.estimation.knowledge import Knowledge
 from telemetry.services.of_flight import OfFlight
 
 HEIGHT_OF_WAY_M = 60.0  # height above ground of the wind used for the flight home
@@ -65,6 +66,26 @@ def _lost_link(document: Mapping[str, Any]) -> LostLinkPlan | None:
         return None
     planned = lost_link_from_json(document["lost_link"])
     return LostLinkPlan(planned.behaviour, planned.rally_points, planned.hold_s)
+
+
+@OfFlight
+def knowledge_of(approval_id: UUID, uav_id: int, flight: int) -> Knowledge:
+    """Return what the estimator knows of a flight; empty after the last flight and for a damaged document."""
+    found = _approved(approval_id, uav_id, flight)
+    if found is None:
+        return Knowledge()
+    approved, document = found
+    figures = next(route["figures"] for route in document["routes"] if route["uav"] == uav_id)
+    performance = performance_from_json(figures["performance"])
+    return Knowledge(
+        flight=approved.route.flights[flight - 1],
+        cruise_speed_mps=approved.route.cruise_speed_mps,
+        max_airspeed_mps=performance.max_airspeed_mps,
+        climb_speed_mps=performance.climb_speed_mps or Knowledge.climb_speed_mps,
+        conditions=conditions_from_json(document["conditions"]),
+        home=approved.take_off.position,
+        is_to_go_on=lost_link_from_json(document["lost_link"] or {}).behaviour is LostLink.GO_ON,
+    )
 
 
 @OfFlight
