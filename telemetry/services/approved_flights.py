@@ -1,8 +1,9 @@
 """Data of approved flights for detectors and for the estimator, computed once: an approval never changes."""
 
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 from uuid import UUID
 
 from django.conf import settings
@@ -19,9 +20,31 @@ from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.estimation.knowledge import Knowledge
-from telemetry.services.of_flight import OfFlight
 
 HEIGHT_OF_WAY_M = 60.0  # height above ground of the wind used for the flight home
+FORGOTTEN_AFTER_S = 600.0  # the estimator asks every second
+
+Found = TypeVar("Found")
+
+
+class OfFlight(Generic[Found]):
+    """Caches a function of approval id, UAV id and flight number. Expired entries are dropped when a new one is added."""
+
+    def __init__(self, work_out: Callable[[UUID, int, int], Found], now_s: Callable[[], float] = time.monotonic) -> None:
+        self._work_out, self._now_s = work_out, now_s
+        self._kept: dict[tuple[UUID, int, int], tuple[Found, float]] = {}  # with the time of the last use
+
+    def __call__(self, approval_id: UUID, uav_id: int, flight: int) -> Found:
+        key, now_s = (approval_id, uav_id, flight), self._now_s()
+        known = self._kept.get(key)
+        if known is None:
+            known = self._work_out(approval_id, uav_id, flight), now_s
+            self._kept = {other: kept for other, kept in self._kept.items() if now_s - kept[1] <= FORGOTTEN_AFTER_S}
+        self._kept[key] = known[0], now_s
+        return known[0]
+
+    def __len__(self) -> int:
+        return len(self._kept)
 
 
 @dataclass(frozen=True, slots=True)
