@@ -30,7 +30,7 @@ METHOD = "socialaccount"  # in the session's records of authentication
 logger = logging.getLogger(__name__)
 
 
-class Refusal(StrEnum):
+class SignInRefusal(StrEnum):
     ORGANISATION = "organisation"
     ROLE = "role"
     INACTIVE = "inactive"
@@ -39,7 +39,7 @@ class Refusal(StrEnum):
 class SignInRefused(Exception):
     """Raised for an identity that is genuine, but may not sign in. `user` is its account, if it has one."""
 
-    def __init__(self, refusal: Refusal, user: User | None = None) -> None:
+    def __init__(self, refusal: SignInRefusal, user: User | None = None) -> None:
         super().__init__(refusal)
         self.refusal, self.user = refusal, user
 
@@ -85,10 +85,10 @@ def user_of_claims(claims: Mapping[str, Any], provider: IdentityProvider) -> Use
         known = _account_of(claims, provider)
         user = known.user if known else None
         if user is not None and (not user.is_active or user.is_service):
-            raise SignInRefused(Refusal.INACTIVE, user)
+            raise SignInRefused(SignInRefusal.INACTIVE, user)
         organisation, role = _organisation_of(claims, provider, user), role_of(claims, provider)
         if not role:
-            raise SignInRefused(Refusal.ROLE, user)
+            raise SignInRefused(SignInRefusal.ROLE, user)
         if user is None:
             user = _first_sign_in(claims, provider, organisation, role)
         else:
@@ -114,7 +114,7 @@ def _organisation_of(claims: Mapping[str, Any], provider: IdentityProvider, user
     found = list(Organisation.objects.filter(name__in=names))
     if len(names) != 1 or not found:
         logger.warning("single sign-on: the claim stands for %d organisations, of which %d exist", len(names), len(found))
-        raise SignInRefused(Refusal.ORGANISATION, user)
+        raise SignInRefused(SignInRefusal.ORGANISATION, user)
     return found[0]
 
 

@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from accounts.views import account, organisation, passkeys, service_accounts, sessions, users
+from accounts.views import account, passkeys, service_accounts, sessions, users
 
 urlpatterns = [
     path("account", account.Account.as_view(), name="api-account"),
@@ -20,7 +20,7 @@ urlpatterns = [
     path("account/tokens", account.AccountTokens.as_view(), name="api-account-tokens"),
     path("account/tokens/<int:token_id>", account.AccountToken.as_view(), name="api-account-token"),
     path("account/sign-ins", account.AccountSignIns.as_view(), name="api-account-sign-ins"),
-    path("organisation", organisation.OwnOrganisation.as_view(), name="api-organisation"),
+    path("organisation", account.OwnOrganisation.as_view(), name="api-organisation"),
     path("users", users.UserList.as_view(), name="api-users"),
     path("users/<int:user_id>", users.UserDetail.as_view(), name="api-user"),
     path("users/<int:user_id>/sign-out", users.UserSessions.as_view(), name="api-user-sessions"),

@@ -1,6 +1,12 @@
 """All URLs of websockets."""
 
-from telemetry.websocket_urls import websocket_urlpatterns as of_telemetry
-from workspace.live.websocket_urls import websocket_urlpatterns as of_the_workspace
+from django.urls import path
 
-websocket_urlpatterns = [*of_telemetry, *of_the_workspace]
+from telemetry.consumers import LiveConsumer
+from workspace.jobs.consumers import JobConsumer
+
+websocket_urlpatterns = [
+    path("ws/live", LiveConsumer.as_asgi()),
+    path("ws/missions/<uuid:mission_id>/live", LiveConsumer.as_asgi()),
+    path("ws/jobs/<uuid:job_id>", JobConsumer.as_asgi()),
+]

@@ -22,7 +22,7 @@ TAG = 6
 _MAX_TIMESTAMP = 2**48 - 1
 
 
-class Refusal(StrEnum):
+class FrameRefusal(StrEnum):
     """Why a frame is not accepted from the UAV whose system id it has."""
 
     UNSIGNED = "unsigned"
@@ -65,24 +65,24 @@ class SignatureCheck:
     last: dict[str, int] = field(default_factory=dict)
     since: int = 0
 
-    def refusal(self, frame: Frame, now_unix_s: float) -> Refusal | None:
+    def refusal(self, frame: Frame, now_unix_s: float) -> FrameRefusal | None:
         """Return why a frame is refused; None accepts it and makes its timestamp the newest of its stream."""
         if frame.timestamp is None:
-            return Refusal.UNSIGNED
+            return FrameRefusal.UNSIGNED
         if not self.is_signed_right(frame):
-            return Refusal.WRONG_SIGNATURE
+            return FrameRefusal.WRONG_SIGNATURE
         stream = stream_of(frame)
         before = self.last.get(stream)
         if before is not None and frame.timestamp <= before:
-            return Refusal.REPLAYED
+            return FrameRefusal.REPLAYED
         if frame.timestamp < timestamp_at(now_unix_s - MAX_AGO_S):
-            return Refusal.TOO_OLD
+            return FrameRefusal.TOO_OLD
         if frame.timestamp < self.since:
-            return Refusal.BEFORE_START
+            return FrameRefusal.BEFORE_START
         if frame.timestamp > timestamp_at(now_unix_s + FURTHEST_AHEAD_S):
-            return Refusal.FROM_THE_FUTURE
+            return FrameRefusal.FROM_THE_FUTURE
         if before is None and len(self.last) >= MAX_STREAMS:
-            return Refusal.TOO_MANY_STREAMS
+            return FrameRefusal.TOO_MANY_STREAMS
         self.last[stream] = frame.timestamp
         return None
 

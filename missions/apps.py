@@ -16,7 +16,7 @@ class MissionsConfig(AppConfig):
         register_check("missions.selectors.flown_infrastructure.flown_missions_touched")
         from inspection.hooks import register_bases, register_deletion, register_inspections  # noqa: PLC0415
 
-        register_inspections("missions.selectors.inspections.inspections_of_assets")
+        register_inspections("missions.selectors.missions.inspections_of_assets")
         register_bases("missions.services.fleet.demo_uavs.positions_of_bases")
         register_deletion("missions.services.fleet.demo_uavs.delete_demo_uavs")
         register_result_texts("missions.tasks.solve_plan", "missions.reason_texts.plan_with_texts")

@@ -12,14 +12,14 @@ from missions.views.approvals import (
     MissionNearestZone,
     MissionRevoke,
 )
-from missions.views.asset_missions import AssetMissions
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.coverage import MissionCoverage, MissionCoverageFile
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.manual_edits import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
-from missions.views.plans import Reachability
+from missions.views.missions import AssetMissions
+from missions.views.plans import ReachableAssets
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.selections import SelectionDetail, SelectionList
 from missions.views.starts import MissionPlannedStarts, MissionReturns, PlannedStartsList
@@ -31,7 +31,7 @@ urlpatterns = [
     path("plans/why-route", WhyRoute.as_view(), name="api-plans-why-route"),
     path("plans/later-departure", LaterDeparture.as_view(), name="api-plans-later-departure"),
     path("plans/legal-windows", PlanLegalWindows.as_view(), name="api-plans-legal-windows"),
-    path("reachability", Reachability.as_view(), name="api-reachability"),
+    path("reachability", ReachableAssets.as_view(), name="api-reachability"),
     path("view-plans", ViewPlans.as_view(), name="api-view-plans"),
     path("camera-catalogue", CameraCatalogue.as_view(), name="api-camera-catalogue"),
     path("missions", views.MissionList.as_view(), name="api-missions"),

@@ -72,6 +72,64 @@ class CheckedPlan:
         return any(item.reason in OUT_OF_REACH | {WIND} or item.missing == 0.0 for item in self.found.left_out)
 
 
+@dataclass
+class _PlanSearch:
+    """The candidates for one request. share: of search_s, for each airspace; solver_calls: of all candidates so far."""
+
+    context: PlanningContext
+    request: PlanRequest
+    terminals: Sequence[LonLat]
+    choice: ZoneChoice
+    stop: Stop
+    on_progress: OnPlanProgress
+    seed: int
+    search_s: float
+    share: float
+    solver_calls: int = 0
+    may_go_on: bool = True  # whether another candidate stays within MAX_SOLVER_CALLS
+    _airspace: tuple[Constraints, Airspace] | None = None  # of the newest candidate
+
+    def checked_plan(self, constraints: Constraints) -> CheckedPlan:
+        """Return the plan in the airspace of the constraints; where it leaves a target out of reach, also tried on the shortest paths."""
+        preferred = self._on_paths(constraints)
+        prefers_lines = self.context.rules.linking.off_network_factor != 1.0
+        if not (prefers_lines and self.may_go_on and preferred.is_out_of_reach):
+            return preferred
+        return _better_in_reach(preferred, self._on_paths(constraints.on_shortest_paths()))
+
+    def _on_paths(self, constraints: Constraints) -> CheckedPlan:
+        """Constrain candidates until their routes can be flown as drawn; what cannot in the last one stays on the ground."""
+        while True:
+            found = self._candidate(constraints)
+            conflicts = conflicts_of(found, found.routes())
+            if not (conflicts and self.may_go_on and constraints.number < MAX_ROUND - 1):
+                return _checked(*without_conflicts(found, conflicts, constraints), constraints, self.choice)
+            constraints = constraints.after(found, conflicts)
+
+    def _candidate(self, constraints: Constraints) -> CandidatePlan:
+        found = candidate_plan(
+            self.request,
+            self._airspace_of(constraints),
+            stop=self.stop,
+            on_progress=self.on_progress,
+            seed=self.seed,
+            search_s=self.search_s * self.share * 0.5**constraints.number * (0.5 if constraints.is_by_length else 1.0),
+            usable_share=constraints.usable_share,
+            kept_from=constraints.kept_from,
+        )
+        self.on_progress(PlanProgress(0.95, Reason("working_out_heights")))
+        self.solver_calls += found.solver_calls
+        self.may_go_on = self.solver_calls + found.solver_calls <= MAX_SOLVER_CALLS
+        return found
+
+    def _airspace_of(self, constraints: Constraints) -> Airspace:
+        if self._airspace is None or not _same_airspace(self._airspace[0], constraints):
+            obstacles = constraints.obstacles(self.context, self.terminals)
+            airspace = airspace_on(self.context, constraints.zones, obstacles, is_by_length=constraints.is_by_length)
+            self._airspace = constraints, airspace
+        return self._airspace[1]
+
+
 def plan(
     context: PlanningContext,
     request: PlanRequest,
@@ -91,61 +149,44 @@ def plan(
     terminals = _terminals(context, request)
     choice = zone_choice(context.zones, request.departs_at, context.rules.flight, terminals)
     share = 0.5 if choice.changes else 1.0
-    prefers_lines = context.rules.linking.off_network_factor != 1.0
-    constraints = Constraints(choice.widest, np.zeros_like(choice.widest))
-    best = freest = preferred = None  # best: meets no zone; freest: on the fewest zones; preferred: waits for the one on shortest paths
-    calls = rounds = 0
-    airspace: Airspace | None = None
-    drawn_for = constraints
-    while True:
-        if airspace is None or not _same_airspace(drawn_for, constraints):
-            obstacles = constraints.obstacles(context, terminals)
-            airspace, drawn_for = airspace_on(context, constraints.zones, obstacles, is_by_length=constraints.is_by_length), constraints
-        found = candidate_plan(
-            request,
-            airspace,
-            stop=stop,
-            on_progress=on_progress,
-            seed=seed,
-            search_s=search_s * share * 0.5**constraints.number * (0.5 if constraints.is_by_length else 1.0),
-            usable_share=constraints.usable_share,
-            kept_from=constraints.kept_from,
-        )
-        on_progress(PlanProgress(0.95, Reason("working_out_heights")))
-        calls += found.solver_calls
-        conflicts = conflicts_of(found, found.routes())
-        may_go_on = calls + found.solver_calls <= MAX_SOLVER_CALLS
-        if conflicts and may_go_on and constraints.number < MAX_ROUND - 1:
-            constraints = constraints.after(found, conflicts)
-            continue
-        checked = _checked(*without_conflicts(found, conflicts, constraints), constraints, choice)
-        if preferred is None and prefers_lines and may_go_on and checked.is_out_of_reach:
-            preferred, constraints = checked, constraints.on_shortest_paths()
-            continue
-        if preferred is not None:
-            checked, preferred = _better_in_reach(preferred, checked), None
-        rounds += 1
-        met = checked.flown.met
-        if best is None:
-            if met:
-                if rounds == MAX_ROUNDS or not may_go_on:
-                    raise ZonesNotSettled
-                constraints = constraints.clear_of(met, choice)
-                continue
-            best, rounds, share = checked, 0, share / MAX_ROUNDS
-            if not choice.changes or not may_go_on:
-                return _plan(context, best, freest or best, calls)
-            constraints = Constraints(choice.narrowest, np.zeros_like(choice.narrowest))
-            continue
+    search = _PlanSearch(context, request, terminals, choice, stop, on_progress, seed, search_s, share)
+    best = freest = _clear_of_most_zones(search)
+    if choice.changes and search.may_go_on:
+        search.share = share / MAX_ROUNDS
+        best, freest = _clear_of_fewer_zones(search, best)
+    return _plan(context, best, freest, search.solver_calls)
+
+
+def _clear_of_most_zones(search: _PlanSearch) -> CheckedPlan:
+    """Return a plan clear of all zones that can be in force at some time of the flight. Raises ZonesNotSettled or ZoneNotAvoided."""
+    widest = search.choice.widest
+    constraints = Constraints(widest, np.zeros_like(widest))
+    for number in range(1, MAX_ROUNDS + 1):
+        checked = search.checked_plan(constraints)
+        if not checked.flown.met:
+            return checked
+        if number == MAX_ROUNDS or not search.may_go_on:
+            break
+        constraints = constraints.clear_of(checked.flown.met, search.choice)
+    raise ZonesNotSettled
+
+
+def _clear_of_fewer_zones(search: _PlanSearch, best: CheckedPlan) -> tuple[CheckedPlan, CheckedPlan]:
+    """Return the better of the best plan and one on fewer zones that meets none, and the first plan, which is on the fewest zones."""
+    narrowest = search.choice.narrowest
+    constraints = Constraints(narrowest, np.zeros_like(narrowest))
+    freest: CheckedPlan | None = None
+    for _ in range(MAX_ROUNDS):
+        checked = search.checked_plan(constraints)
         freest = freest or checked
-        if not checked.value < best.value:
-            return _plan(context, best.beside(checked), freest, calls)
-        if not met:
-            return _plan(context, checked.beside(best), freest, calls)
+        is_better = checked.value < best.value
+        if is_better and not checked.flown.met:
+            return checked.beside(best), freest
         best = best.beside(checked)
-        if rounds == MAX_ROUNDS or not may_go_on:
-            return _plan(context, best, freest, calls)
-        constraints = Constraints(choice.with_zones(constraints.zones, met), constraints.closed_zones)
+        if not (is_better and search.may_go_on):
+            break
+        constraints = Constraints(search.choice.with_zones(constraints.zones, checked.flown.met), constraints.closed_zones)
+    return best, freest or best
 
 
 def plan_on_map(found: Plan, context: PlanningContext) -> Plan | None:

@@ -18,4 +18,4 @@ class SimulationConfig(AppConfig):
         register_failed_rehearsals("simulation.services.rehearsals.failed_rehearsals")
         register_rehearsed_photos("simulation.services.rehearsed_photos.rehearsed_photos")
         register_check("simulation.services.rehearsals.reasons_without_rehearsal")
-        register_sources("simulation.simulation_selectors.EVENT_SOURCES")
+        register_sources("simulation.selectors.EVENT_SOURCES")

@@ -23,7 +23,15 @@ from accounts.identity_claims import IdentityProvider
 from accounts.identity_provider import LEEWAY_S, ProviderUnavailable, WrongAnswer, authorization_address, claims_of_code, identity_provider
 from accounts.invitations import public_address
 from accounts.login import note_reauthentication, record_sign_in
-from accounts.single_sign_on import METHOD, Refusal, SignInRefused, identity_of, local_sign_in_is_on, local_sign_in_off, user_of_claims
+from accounts.single_sign_on import (
+    METHOD,
+    SignInRefusal,
+    SignInRefused,
+    identity_of,
+    local_sign_in_is_on,
+    local_sign_in_off,
+    user_of_claims,
+)
 from workspace.models import SignInOutcome, User
 from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, count_attempt, network_of
 
@@ -182,8 +190,8 @@ class SingleSignOnCallback(_SingleSignOnView):
     def _refused(self, request: HttpRequest, refused: SignInRefused) -> HttpResponse:
         record_sign_in(request, SignInOutcome.REFUSED, user=refused.user)
         advice = {
-            Refusal.ORGANISATION: _("{provider} names no organisation of yours that is known here. Ask an administrator for access."),
-            Refusal.ROLE: _("{provider} gives you no role in Spanwise. Ask an administrator to put you into a group that has one."),
-            Refusal.INACTIVE: _("Your account is disabled. Ask an administrator of your organisation."),
+            SignInRefusal.ORGANISATION: _("{provider} names no organisation of yours that is known here. Ask an administrator for access."),
+            SignInRefusal.ROLE: _("{provider} gives you no role in Spanwise. Ask an administrator to put you into a group that has one."),
+            SignInRefusal.INACTIVE: _("Your account is disabled. Ask an administrator of your organisation."),
         }[refused.refusal]
         return self.fails(request, 403, _("You have no access to Spanwise"), advice.format(provider=self.provider.name))

@@ -34,7 +34,7 @@ from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.problem import End
-from planning.reachability.reachability import Flight, FlownNetwork, reach
+from planning.reachability.reachability import FlownNetwork, PossibleFlight, reach
 from planning.reachability.reachable_assets import Reach, Reachability
 from planning.rules import FlightRules, RoutingRules
 
@@ -102,7 +102,7 @@ def measure(
         places = [LonLat(lon, lat) for lon, lat in at.tolist()]
         ends = (End.OPEN, End.RETURN, End.ANY_BASE)
         flights = [
-            Flight(place, ends[number % 3], RANGE_M if number % 2 else np.inf, number % 3 > 0, types[number // 3 % len(types)])
+            PossibleFlight(place, ends[number % 3], RANGE_M if number % 2 else np.inf, number % 3 > 0, types[number // 3 % len(types)])
             for number, place in enumerate(places[:uavs])
         ]
         began_s = perf_counter()

@@ -48,7 +48,7 @@ from simulation.rehearsing.weather_scenario import Named, named_scenario, scenar
 from simulation.simulator.flight import RunningSimulation  # noqa: E402
 from simulation.simulator.options import SimulatorOptions  # noqa: E402
 from simulation.simulator.process import Simulator  # noqa: E402
-from simulation.vehicle_endpoint.fleet import Fleet, FleetReport  # noqa: E402
+from simulation.vehicle_endpoint.fleet import FleetReport, SimulatedFleet  # noqa: E402
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row  # noqa: E402
 from telemetry.models import TelemetryRecord  # noqa: E402
 
@@ -120,7 +120,7 @@ def square(at: LonLat) -> tuple[MissionItem, ...]:
     return (take_off, *flown, MissionItem(mavlink.MAV_CMD_DO_JUMP, mavlink.MAV_FRAME_MISSION, (1.0, -1.0, 0.0, 0.0)))
 
 
-def on_their_squares(fleet: Fleet) -> Fleet:
+def on_their_squares(fleet: SimulatedFleet) -> SimulatedFleet:
     for flying in fleet.uavs:
         flying.endpoint.missions.put(MissionType.MISSION, square(flying.uav.state.position))
         flying.uav.set_mode(FlightMode.MISSION)

@@ -33,7 +33,7 @@ class GdalRefusal(ValueError):
 
 
 @dataclass(frozen=True)
-class Limits:
+class GdalLimits:
     """Limits of the child. answer_s: of the wall clock, for one answer."""
 
     memory_mib: int = 512  # of addresses, 200 MiB of which are libraries
@@ -46,13 +46,13 @@ class Limits:
         return min(self.processor_s + int(self.processor_s_per_mib * size_bytes / 2**20), self.most_processor_s)
 
 
-LIMITS = Limits()
+LIMITS = GdalLimits()
 
 
 class GdalProcess:
     """A running child. files: by the names under which it finds them, all in one folder without anything else."""
 
-    def __init__(self, driver: str, files: Mapping[str, IO[bytes]], limits: Limits, **job: Any) -> None:
+    def __init__(self, driver: str, files: Mapping[str, IO[bytes]], limits: GdalLimits, **job: Any) -> None:
         self._limits = limits
         self._folder = tempfile.TemporaryDirectory(prefix="gdal-")
         folder = Path(self._folder.name)
@@ -143,7 +143,7 @@ class GdalProcess:
         return GdalRefusal(Reason("reader_ended", {"mib": self._limits.memory_mib}))
 
 
-def started(driver: str, files: Mapping[str, IO[bytes]], limits: Limits = LIMITS, **job: Any) -> GdalProcess:
+def started(driver: str, files: Mapping[str, IO[bytes]], limits: GdalLimits = LIMITS, **job: Any) -> GdalProcess:
     """Start a child that reads the first of the files, or the folder that it is in; its caller closes it. Raises GdalRefusal."""
     process = GdalProcess(driver, files, limits, **job)
     try:
@@ -155,7 +155,7 @@ def started(driver: str, files: Mapping[str, IO[bytes]], limits: Limits = LIMITS
 
 
 @contextmanager
-def gdal_process(driver: str, files: Mapping[str, IO[bytes]], limits: Limits = LIMITS, **job: Any) -> Iterator[GdalProcess]:
+def gdal_process(driver: str, files: Mapping[str, IO[bytes]], limits: GdalLimits = LIMITS, **job: Any) -> Iterator[GdalProcess]:
     """Start a child and close it. Raises GdalRefusal."""
     process = started(driver, files, limits, **job)
     try:

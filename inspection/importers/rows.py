@@ -48,7 +48,7 @@ class RawRow:
 
 
 @dataclass
-class Source:
+class RowSource:
     """An open file. rows may be called repeatedly; each call reads the file from its start."""
 
     file_format: str

@@ -13,6 +13,17 @@ class JsonFault(ValueError):
     """Raised for text that is not acceptable JSON; the message has the place and the reason."""
 
 
+class NotANumber(Exception):
+    """Raised by STRICT_DECODER for NaN and Infinity; the message is their text."""
+
+
+def _not_a_number(text: str) -> NoReturn:
+    raise NotANumber(text)
+
+
+STRICT_DECODER = json.JSONDecoder(parse_constant=_not_a_number)
+
+
 def parse_strict_json(data: bytes | str, *, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any:
     """Return the value of a JSON text in UTF-8; a byte-order mark is allowed. Raises JsonFault."""
     if len(data) > max_bytes:

@@ -18,7 +18,7 @@ def bends_of(bends: Bends) -> FloatArray:
     return np.array(bends, dtype=np.float64).reshape(-1, 2)
 
 
-class NoWay(LookupError):
+class NoPath(LookupError):
     """No way leads from the source to the sink."""
 
 

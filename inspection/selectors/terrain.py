@@ -1,13 +1,15 @@
-"""Terrain heights from the stored models."""
+"""Terrain heights from the stored models, also under the nodes of a graph."""
 
 from functools import lru_cache
 from threading import Lock
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from django.db.models import Count, Max
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import TerrainTile
+from inspection.network.inspection_graph import InspectionGraph
 from inspection.selectors.ground import DatasetVersion, ground_dataset_version
 from inspection.terrain.heights import HeightGrid, unpacked
 from inspection.terrain.tiled_terrain import IntArray, TerrainHeights, TiledTerrain
@@ -87,3 +89,20 @@ class _Grids:
 
 
 _grids = _Grids()
+
+
+Terrain = tuple[int | None, int]
+
+_one_thread = Lock()
+_kept: WeakKeyDictionary[InspectionGraph, tuple[Terrain, FloatArray]] = WeakKeyDictionary()
+
+
+def node_ground_m(graph: InspectionGraph, terrain: Terrain) -> FloatArray:
+    """Return heights above sea level (n,), NaN where no terrain model has data; the same array while the terrain is unchanged."""
+    with _one_thread:
+        kept = _kept.get(graph)
+        if kept is None or kept[0] != terrain:
+            heights_m = ground_heights_m(graph.position)
+            heights_m.setflags(write=False)
+            kept = _kept[graph] = terrain, heights_m
+        return kept[1]

@@ -14,7 +14,7 @@ from inspection.scene.overhead import CATENARY_M, EARTH_SHARE, MAX_SAG_SHARE
 from inspection.scene.supports import DrawnSpan, DrawnSupport
 from inspection.selectors import asset_label
 from inspection.selectors.scene import SceneBridge, SceneContent, SceneZone
-from inspection.serializers.terrain import PositionField
+from inspection.serializers.terrain import LonLatField
 from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json, schedule_words
 from workspace.jobs.serializers import Declared
 
@@ -48,7 +48,7 @@ class SupportSerializer(serializers.Serializer):
     label: Declared = serializers.CharField(allow_null=True)
     kind = serializers.ChoiceField(choices=["tower", "pole", "portal", "vertex"])
     form = serializers.ChoiceField(choices=["lattice", "tubular", "wooden", "h-frame", "portal", "guyed", "stake"])
-    position = PositionField()
+    position = LonLatField()
     ground_amsl_m = serializers.FloatField()
     height_m = serializers.FloatField(help_text="above its ground; what planners count")
     height_source = serializers.ChoiceField(choices=["tag", "line", "assumed"])
@@ -83,7 +83,7 @@ class RailwaySerializer(serializers.Serializer):
     kind = serializers.CharField()
     tracks = serializers.IntegerField()
     is_electrified = serializers.BooleanField(help_text="with a wire above the track")
-    line = serializers.ListField(child=PositionField())
+    line = serializers.ListField(child=LonLatField())
 
 
 class SceneBridgeSerializer(serializers.Serializer):
@@ -91,7 +91,7 @@ class SceneBridgeSerializer(serializers.Serializer):
     label: Declared = serializers.CharField()
     is_named = serializers.BooleanField(help_text="its label is a name or number of its own")
     carries = serializers.CharField()
-    polygons = serializers.ListField(child=serializers.ListField(child=serializers.ListField(child=PositionField())))
+    polygons = serializers.ListField(child=serializers.ListField(child=serializers.ListField(child=LonLatField())))
     deck_amsl_m = serializers.FloatField()
     deck_source = serializers.ChoiceField(choices=["tag", "layer"])
     height_m = serializers.FloatField(help_text="its top above ground, as planners count it")
@@ -110,7 +110,7 @@ class SceneZoneSerializer(serializers.Serializer):
     name = serializers.CharField()
     restriction = serializers.CharField()
     polygons = serializers.ListField(
-        child=serializers.ListField(child=serializers.ListField(child=PositionField())), help_text="outline and holes of each, cut at clip"
+        child=serializers.ListField(child=serializers.ListField(child=LonLatField())), help_text="outline and holes of each, cut at clip"
     )
     lower = SceneLimitSerializer()
     upper = SceneLimitSerializer()
@@ -131,7 +131,7 @@ class SceneRulesSerializer(serializers.Serializer):
 
 
 class OriginSerializer(serializers.Serializer):
-    position = PositionField()
+    position = LonLatField()
     altitude_amsl_m = serializers.FloatField()
 
 

@@ -18,7 +18,7 @@ MAX_VERTICES = 2_000
 MAX_PLACES = 5_000
 
 
-class PositionField(serializers.ListField):
+class LonLatField(serializers.ListField):
     """Longitude, latitude [deg]."""
 
     child = serializers.FloatField(min_value=-180.0, max_value=180.0)
@@ -72,7 +72,7 @@ class GroundHeightSerializer(serializers.Serializer):
 
 
 class ProfileInputSerializer(serializers.Serializer):
-    line = serializers.ListField(child=PositionField(), min_length=2, max_length=MAX_VERTICES)
+    line = serializers.ListField(child=LonLatField(), min_length=2, max_length=MAX_VERTICES)
     step_m = serializers.FloatField(
         min_value=1, max_value=100_000, required=False, help_text="no less than half a post's distance, which it is unless told"
     )
@@ -116,10 +116,10 @@ class ProfileSerializer(serializers.Serializer):
 
 
 class HeightsInputSerializer(serializers.Serializer):
-    positions = serializers.ListField(child=PositionField(), min_length=1, max_length=MAX_PLACES)
+    positions = serializers.ListField(child=LonLatField(), min_length=1, max_length=MAX_PLACES)
     heights_m = serializers.ListField(child=serializers.FloatField(min_value=-1_000, max_value=100_000), max_length=MAX_PLACES)
     reference = serializers.ChoiceField(choices=REFERENCES, help_text="from where heights_m count; RELATIVE: above take-off")
-    take_off = PositionField(required=False, help_text="unless told, the first position")
+    take_off = LonLatField(required=False, help_text="unless told, the first position")
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
         if len(values["heights_m"]) != len(values["positions"]):

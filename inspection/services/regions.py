@@ -84,16 +84,16 @@ def delete_assets(*, group: AssetGroup, actor: User | None) -> dict[str, int]:
     return counts
 
 
-class NameTaken(Exception):
+class RegionNameTaken(Exception):
     """Raised where another region has the name."""
 
 
 def rename_region(*, region: Region, name: str, actor: User) -> None:
-    """Rename a region. Raises NameTaken."""
+    """Rename a region. Raises RegionNameTaken."""
     with transaction.atomic():
         hold_ground()
         if Region.objects.filter(name=name).exclude(pk=region.pk).exists():
-            raise NameTaken
+            raise RegionNameTaken
         before, region.name = region.name, name
         region.save(update_fields=["name"])
         record_change(

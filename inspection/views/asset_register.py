@@ -65,7 +65,7 @@ class AssetCountsView(APIView):
         )
 
 
-class AssetFile(APIView):
+class AssetExport(APIView):
     content_negotiation_class = OneAnswer
     throttle_scope = "exports"
 

@@ -13,7 +13,7 @@ from inspection.models import AssetSet, DataImport, Region
 from inspection.selectors.ground import regions_in_use
 from inspection.services.regions import (
     AssetGroup,
-    NameTaken,
+    RegionNameTaken,
     ask_to_delete_region,
     counts_of_group,
     counts_of_region,
@@ -110,7 +110,7 @@ class RegionDetail(APIView):
         body.is_valid(raise_exception=True)
         try:
             rename_region(region=region_of(region_id), name=body.validated_data["name"], actor=request.user)
-        except NameTaken as error:
+        except RegionNameTaken as error:
             raise ApiProblem(409, "name_taken", _("Another region has this name.")) from error
         return Response(status=204)
 

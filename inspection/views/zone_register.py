@@ -53,7 +53,7 @@ def _sorted(counts: dict[str, int]) -> list[dict[str, Any]]:
     return [{"value": value, "count": count} for value, count in sorted(counts.items(), key=lambda entry: (-entry[1], entry[0]))]
 
 
-class ZoneFile(APIView):
+class ZoneExport(APIView):
     content_negotiation_class = OneAnswer
     throttle_scope = "exports"
 

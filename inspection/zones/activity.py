@@ -58,14 +58,14 @@ def sun_event_s(event: str, day: int, lon_deg: float, lat_deg: float) -> float |
     return day * DAY_S + minutes * 60.0
 
 
-class Span(NamedTuple):
+class TimeSpan(NamedTuple):
     """A span of time, its end excluded; seconds since the epoch, UTC."""
 
     from_s: float
     to_s: float
 
 
-def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float, margin_s: float = 0.0) -> tuple[Span, ...]:
+def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float, margin_s: float = 0.0) -> tuple[TimeSpan, ...]:
     """Return when a zone in the box applies between two moments: disjoint spans in order, each wider by the margin on both sides.
 
     schedule is in the form of checked_schedule; None applies always. Days and times of day are UTC. With the sun, "Monday" is Monday in UTC
@@ -74,35 +74,35 @@ def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float
     """
     if not from_s < to_s:
         return ()
-    always = (Span(from_s, to_s),)
+    always = (TimeSpan(from_s, to_s),)
     if not schedule:
         return always
     try:
         spans = [span for period in schedule for span in _of_period(period, box, from_s - margin_s, to_s + margin_s)]
     except (ArithmeticError, AttributeError, KeyError, TypeError, ValueError):
         return always
-    return merged((Span(max(start - margin_s, from_s), min(end + margin_s, to_s)) for start, end in spans))
+    return merged((TimeSpan(max(start - margin_s, from_s), min(end + margin_s, to_s)) for start, end in spans))
 
 
-def merged(spans: Iterable[Span]) -> tuple[Span, ...]:
+def merged(spans: Iterable[TimeSpan]) -> tuple[TimeSpan, ...]:
     """Return the same time in as few spans as possible, in order; empty ones are omitted."""
-    joined: list[Span] = []
+    joined: list[TimeSpan] = []
     for span in sorted(span for span in spans if span.from_s < span.to_s):
         if joined and span.from_s <= joined[-1].to_s:
-            joined[-1] = Span(joined[-1].from_s, max(joined[-1].to_s, span.to_s))
+            joined[-1] = TimeSpan(joined[-1].from_s, max(joined[-1].to_s, span.to_s))
         else:
             joined.append(span)
     return tuple(joined)
 
 
-def _of_period(period: dict[str, Any], box: Box, from_s: float, to_s: float) -> Iterator[Span]:
+def _of_period(period: dict[str, Any], box: Box, from_s: float, to_s: float) -> Iterator[TimeSpan]:
     start, end = _moment_s(period["startDateTime"], -math.inf), _moment_s(period["endDateTime"], math.inf, is_end=True)
     first, last = max(start, from_s), min(end, to_s)
     if not first < last:
         return
     entries = period["schedule"]
     if not entries:
-        yield Span(first, last)
+        yield TimeSpan(first, last)
         return
     if last - first > MAX_WINDOW_S:
         raise ValueError("too many days to look at")
@@ -111,10 +111,10 @@ def _of_period(period: dict[str, Any], box: Box, from_s: float, to_s: float) -> 
         # An entry may begin half a day before its day in UTC, and last two and a half days.
         for day in range(math.floor(first / DAY_S) - 3, math.floor(last / DAY_S) + 2):
             if (day + EPOCH_WEEKDAY) % 7 in weekdays:
-                yield from (Span(max(span.from_s, first), min(span.to_s, last)) for span in _of_entry(entry, day, box))
+                yield from (TimeSpan(max(span.from_s, first), min(span.to_s, last)) for span in _of_entry(entry, day, box))
 
 
-def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[Span]:
+def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[TimeSpan]:
     start_s, end_s = _time_s(entry["startTime"]), _time_s(entry["endTime"], is_end=True)
     start_event, end_event = entry["startEvent"], entry["endEvent"]
     if (start_s is not None and start_event) or (end_s is not None and end_event):
@@ -122,7 +122,7 @@ def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[Span]:
     midnight = day * DAY_S
     if not start_event and not end_event:
         start = midnight + (start_s or 0.0)
-        yield Span(start, _after(start, midnight + (DAY_S if end_s is None else end_s)))
+        yield TimeSpan(start, _after(start, midnight + (DAY_S if end_s is None else end_s)))
         return
     places = _places(box)
     for starts in _starts(start_event, start_s, day, places):
@@ -132,10 +132,10 @@ def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[Span]:
             if len(known) < len(places):  # it begins somewhere in between, and its end may be as late as where it never happens
                 ends.append((day + 3) * DAY_S)
             early, late = SUN_ALLOWANCE_S if start_event else 0.0, SUN_ALLOWANCE_S if end_event else 0.0
-            yield Span(min(start for _place, start in known) - early, max(ends) + late)
+            yield TimeSpan(min(start for _place, start in known) - early, max(ends) + late)
     for lon, lat in places:
         if any(event and sun_event_s(event, day, lon, lat) is None for event in (start_event, end_event)):
-            yield Span(midnight + min(0.0, -_solar_s(lon)), midnight + DAY_S + max(0.0, -_solar_s(lon)))
+            yield TimeSpan(midnight + min(0.0, -_solar_s(lon)), midnight + DAY_S + max(0.0, -_solar_s(lon)))
 
 
 def _starts(event: str | None, time_s: float | None, day: int, places: list[Place]) -> Iterator[list[float | None]]:

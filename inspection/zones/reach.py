@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from inspection.zones.activity import Span, active_spans
+from inspection.zones.activity import TimeSpan, active_spans
 from inspection.zones.schedule import Schedule, ZoneRules
 
 BoolArray = NDArray[np.bool_]
@@ -105,11 +105,11 @@ class ZoneTable:
         mask: BoolArray = (self.floor_agl_m - margin_m <= high_agl_m) & (self.ceiling_agl_m + margin_m >= low_agl_m)
         return mask
 
-    def spans(self, from_s: float, to_s: float) -> tuple[tuple[Span, ...], ...]:
+    def spans(self, from_s: float, to_s: float) -> tuple[tuple[TimeSpan, ...], ...]:
         """Return for each zone when it applies between two moments, time margin included."""
         return self._spans(from_s, to_s, self.rules.time_margin_s)
 
-    def stated_spans(self, from_s: float, to_s: float) -> tuple[tuple[Span, ...], ...]:
+    def stated_spans(self, from_s: float, to_s: float) -> tuple[tuple[TimeSpan, ...], ...]:
         """Return for each zone when it applies between two moments, as its schedule states it."""
         return self._spans(from_s, to_s, 0.0)
 
@@ -119,10 +119,10 @@ class ZoneTable:
 
     def active_throughout(self, from_s: float, to_s: float) -> BoolArray:
         """Return which zones apply throughout a window, (z,)."""
-        whole = (Span(from_s, to_s),)
+        whole = (TimeSpan(from_s, to_s),)
         return np.array([spans == whole for spans in self.spans(from_s, to_s)], dtype=bool)
 
-    def _spans(self, from_s: float, to_s: float, margin_s: float) -> tuple[tuple[Span, ...], ...]:
+    def _spans(self, from_s: float, to_s: float, margin_s: float) -> tuple[tuple[TimeSpan, ...], ...]:
         return tuple(
             active_spans(schedule, (box[0], box[1], box[2], box[3]), from_s, to_s, margin_s)
             for schedule, box in zip(self.schedules, self.box.tolist(), strict=True)

@@ -44,7 +44,7 @@ class CaptureSource(StrEnum):
     TRIGGER = "camera-trigger"
 
 
-class TimeSource(StrEnum):
+class CaptureTimeSource(StrEnum):
     """Whose time a photo has."""
 
     VEHICLE_CLOCK = "vehicle-clock"  # the autopilot's time since boot
@@ -65,7 +65,7 @@ class AttitudeSource(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class CaptureReport:
+class CaptureMessage:
     """One message about a photo; None is unknown. Repetitions of a message have the same `key`.
 
     `taken_s` is the server's time. Bounds are those of 95 %: seconds, and the radius of the position in metres. `yaw_deg` is from true
@@ -75,7 +75,7 @@ class CaptureReport:
     source: CaptureSource
     key: str
     taken_s: float
-    time_source: TimeSource
+    time_source: CaptureTimeSource
     time_bound_s: float | None = None
     is_taken: bool = True
     camera: int | None = None
@@ -100,22 +100,22 @@ class CaptureReport:
         return {name: value for name, value in stored.items() if value not in (None, "")}
 
     @classmethod
-    def from_json(cls, stored: Mapping[str, Any]) -> "CaptureReport":
+    def from_json(cls, stored: Mapping[str, Any]) -> "CaptureMessage":
         values: dict[str, Any] = {name: _ENUMS[name](value) if name in _ENUMS else value for name, value in stored.items()}
         return cls(**values)
 
 
 _ENUMS: Mapping[str, type[StrEnum]] = {
-    "source": CaptureSource, "time_source": TimeSource, "position_source": PositionSource, "yaw_frame": YawFrame,
+    "source": CaptureSource, "time_source": CaptureTimeSource, "position_source": PositionSource, "yaw_frame": YawFrame,
     "attitude_source": AttitudeSource,
 }  # fmt: skip
-_TIMES = list(TimeSource)
+_TIMES = list(CaptureTimeSource)
 _ATTITUDES = [*AttitudeSource, None]
 _POSITIONS = [*PositionSource, None]
 _SOURCES = list(CaptureSource)
 
 
-def combined(reports: Sequence[CaptureReport]) -> CaptureReport:
+def combined(reports: Sequence[CaptureMessage]) -> CaptureMessage:
     """Return one photo from all its reports, in any order: of each value the one of the best source.
 
     Positions that differ widen the bound. A photo that its camera could not take was not taken.
@@ -126,7 +126,7 @@ def combined(reports: Sequence[CaptureReport]) -> CaptureReport:
     aimed = min(ordered, key=lambda report: _ATTITUDES.index(report.attitude_source))
     by_place = sorted(ordered, key=lambda report: _POSITIONS.index(report.position_source))
 
-    def known(name: str, among: Sequence[CaptureReport] = ordered) -> Any:
+    def known(name: str, among: Sequence[CaptureMessage] = ordered) -> Any:
         return next((value for report in among if (value := getattr(report, name)) is not None), None)
 
     return replace(
@@ -153,7 +153,7 @@ def combined(reports: Sequence[CaptureReport]) -> CaptureReport:
     )
 
 
-def _widened(placed: CaptureReport, reports: Sequence[CaptureReport]) -> float | None:
+def _widened(placed: CaptureMessage, reports: Sequence[CaptureMessage]) -> float | None:
     if placed.longitude_deg is None or placed.latitude_deg is None or placed.position_bound_m is None:
         return placed.position_bound_m
     bound_m = placed.position_bound_m
@@ -175,7 +175,7 @@ class _Place(NamedTuple):
 
 class _Time(NamedTuple):
     taken_s: float
-    source: TimeSource
+    source: CaptureTimeSource
     bound_s: float | None
 
 
@@ -186,10 +186,10 @@ class CaptureDecoder:
     _place: _Place | None = None
     _attitude: tuple[float, ReportedAttitude] | None = None
     _gps_m: float = GPS_BOUND_M
-    _right_clocks: set[tuple[int, TimeSource]] = field(default_factory=set)  # of components whose messages came on time
+    _right_clocks: set[tuple[int, CaptureTimeSource]] = field(default_factory=set)  # of components whose messages came on time
     _gimbals: dict[tuple[str, int, int], tuple[float, ReportedAttitude]] = field(default_factory=dict)
 
-    def receive(self, message: Message, clock: VehicleTime, autopilot_type: AutopilotType | None, now_s: float) -> CaptureReport | None:
+    def receive(self, message: Message, clock: VehicleTime, autopilot_type: AutopilotType | None, now_s: float) -> CaptureMessage | None:
         """Return the report of a photo; None for other messages."""
         kind = message.get_type()
         if message.get_srcComponent() == AUTOPILOT and kind in ("GLOBAL_POSITION_INT", "ATTITUDE", "GPS_RAW_INT"):
@@ -219,7 +219,7 @@ class CaptureDecoder:
                 now_s, message.lon / E7, message.lat / E7, message.alt / 1e3, message.relative_alt / 1e3, speed_mps
             )  # fmt: skip
 
-    def _image_captured(self, message: Message, clock: VehicleTime, autopilot_type: AutopilotType | None, now_s: float) -> CaptureReport:
+    def _image_captured(self, message: Message, clock: VehicleTime, autopilot_type: AutopilotType | None, now_s: float) -> CaptureMessage:
         """CAMERA_IMAGE_CAPTURED. That of PX4 itself has the vehicle's attitude, and as its relative height that above the ground, or -1."""
         component = message.get_srcComponent()
         is_own = component == AUTOPILOT
@@ -228,7 +228,7 @@ class CaptureDecoder:
         relative_m = _height(message.relative_alt / 1e3) if message.relative_alt > 0 or not is_own else None
         is_above_ground = is_own and autopilot_type is AutopilotType.PX4
         is_reference_known = not is_own or autopilot_type in (AutopilotType.PX4, AutopilotType.ARDUPILOT)
-        report = CaptureReport(
+        report = CaptureMessage(
             CaptureSource.IMAGE_CAPTURED,
             _key(CaptureSource.IMAGE_CAPTURED, component, message.camera_id, message.image_index, stamp),
             *self._time(clock, now_s, boot_s=boot_s, utc_s=utc_s, component=component),
@@ -245,13 +245,13 @@ class CaptureDecoder:
             self._aimed(report, own, AttitudeSource.VEHICLE if is_own else AttitudeSource.CAMERA, now_s), message.lat, message.lon, now_s
         )
 
-    def _feedback(self, message: Message, clock: VehicleTime, autopilot_type: AutopilotType | None, now_s: float) -> CaptureReport:
+    def _feedback(self, message: Message, clock: VehicleTime, autopilot_type: AutopilotType | None, now_s: float) -> CaptureMessage:
         """CAMERA_FEEDBACK. ArduPilot's has the vehicle's attitude, and the time of day, or with a feedback pin microseconds since boot."""
         component = message.get_srcComponent()
         time_s = message.time_usec / 1e6
         is_utc = time_s >= FIRST_DAY_S
         has_place = is_place(message.lat, message.lng)
-        report = CaptureReport(
+        report = CaptureMessage(
             CaptureSource.FEEDBACK,
             _key(CaptureSource.FEEDBACK, component, message.cam_idx, message.img_idx, message.time_usec or self._place_stamp(message)),
             *self._time(
@@ -267,12 +267,12 @@ class CaptureDecoder:
         aimed = self._aimed(report, own, AttitudeSource.VEHICLE if is_of_vehicle else AttitudeSource.CAMERA, now_s)
         return self._placed(aimed, message.lat, message.lng, now_s)
 
-    def _trigger(self, message: Message, clock: VehicleTime, now_s: float) -> CaptureReport:
+    def _trigger(self, message: Message, clock: VehicleTime, now_s: float) -> CaptureMessage:
         """CAMERA_TRIGGER: a camera was triggered, and when."""
         component, time_s = message.get_srcComponent(), message.time_usec / 1e6
         is_utc = time_s >= FIRST_DAY_S
         boot_s = None if is_utc or not time_s else time_s
-        report = CaptureReport(
+        report = CaptureMessage(
             CaptureSource.TRIGGER,
             _key(CaptureSource.TRIGGER, component, 0, message.seq, message.time_usec),
             *self._time(clock, now_s, boot_s=boot_s, utc_s=time_s if is_utc else 0.0, component=component),
@@ -294,29 +294,29 @@ class CaptureDecoder:
         if boot is not None and boot_s is not None:
             taken_s = boot.clock.measured_s(boot_s)
             is_late_like_others = is_own and now_s - boot.live_at_s > RECEIPT_BOUND_S
-            latest_s = DAY_S if is_late_like_others else self._latest_s(component, TimeSource.VEHICLE_CLOCK)
+            latest_s = DAY_S if is_late_like_others else self._latest_s(component, CaptureTimeSource.VEHICLE_CLOCK)
             if -CLOCK_BOUND_S <= now_s - taken_s <= latest_s:
-                self._note_clock(component, TimeSource.VEHICLE_CLOCK, now_s - taken_s)
-                return _Time(min(taken_s, now_s), TimeSource.VEHICLE_CLOCK, CLOCK_BOUND_S)
+                self._note_clock(component, CaptureTimeSource.VEHICLE_CLOCK, now_s - taken_s)
+                return _Time(min(taken_s, now_s), CaptureTimeSource.VEHICLE_CLOCK, CLOCK_BOUND_S)
             if is_own and 0.0 <= now_s - taken_s <= DAY_S:  # sent late, or another boot
-                return _Time(now_s, TimeSource.RECEIPT, now_s - taken_s)
-        if is_day and -UTC_BOUND_S <= now_s - utc_s <= self._latest_s(component, TimeSource.UTC):
-            self._note_clock(component, TimeSource.UTC, now_s - utc_s)
-            return _Time(min(utc_s, now_s), TimeSource.UTC, UTC_BOUND_S)
+                return _Time(now_s, CaptureTimeSource.RECEIPT, now_s - taken_s)
+        if is_day and -UTC_BOUND_S <= now_s - utc_s <= self._latest_s(component, CaptureTimeSource.UTC):
+            self._note_clock(component, CaptureTimeSource.UTC, now_s - utc_s)
+            return _Time(min(utc_s, now_s), CaptureTimeSource.UTC, UTC_BOUND_S)
         off_s = now_s - utc_s if is_day and 0.0 <= now_s - utc_s <= DAY_S else 0.0
-        return _Time(now_s, TimeSource.RECEIPT, max(off_s, RECEIPT_BOUND_S))
+        return _Time(now_s, CaptureTimeSource.RECEIPT, max(off_s, RECEIPT_BOUND_S))
 
-    def _latest_s(self, component: int, source: TimeSource) -> float:
+    def _latest_s(self, component: int, source: CaptureTimeSource) -> float:
         """Return how late a photo may be for its time to count."""
-        if component == AUTOPILOT and source is TimeSource.VEHICLE_CLOCK:
+        if component == AUTOPILOT and source is CaptureTimeSource.VEHICLE_CLOCK:
             return RECEIPT_BOUND_S
         return ASKED_AGAIN_S if (component, source) in self._right_clocks else UTC_BOUND_S
 
-    def _note_clock(self, component: int, source: TimeSource, late_s: float) -> None:
+    def _note_clock(self, component: int, source: CaptureTimeSource, late_s: float) -> None:
         if late_s <= UTC_BOUND_S:
             self._right_clocks.add((component, source))
 
-    def _aimed(self, report: CaptureReport, own: ReportedAttitude | None, source: AttitudeSource, now_s: float) -> CaptureReport:
+    def _aimed(self, report: CaptureMessage, own: ReportedAttitude | None, source: AttitudeSource, now_s: float) -> CaptureMessage:
         """Return the report with the best attitude: the camera's, else the gimbal's, else the vehicle's."""
         heading_deg = self._fresh_attitude(now_s).yaw_deg
         gimbal = self._gimbal(now_s)
@@ -332,7 +332,7 @@ class CaptureDecoder:
             report, roll_deg=own.roll_deg, pitch_deg=own.pitch_deg, yaw_deg=own.yaw_deg, yaw_frame=own.frame, attitude_source=source
         )
 
-    def _placed(self, report: CaptureReport, latitude_e7: int, longitude_e7: int, now_s: float) -> CaptureReport:
+    def _placed(self, report: CaptureMessage, latitude_e7: int, longitude_e7: int, now_s: float) -> CaptureMessage:
         """Return the report with the photo's own position, else with the vehicle's last, whose age widens the bound."""
         place = self._place if self._place is not None and now_s - self._place.received_s <= FRESH_S else None
         speed_mps = 0.0 if place is None else place.speed_mps

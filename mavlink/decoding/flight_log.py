@@ -7,7 +7,7 @@ from typing import BinaryIO
 
 from mavlink.addressing import AUTOPILOT
 from mavlink.decoding.boots import VehicleTime
-from mavlink.decoding.captures import CaptureDecoder, CaptureReport
+from mavlink.decoding.captures import CaptureDecoder, CaptureMessage
 from mavlink.decoding.report import is_vehicle
 from mavlink.frames import HEADER_V1, HEADER_V2, IS_SIGNED, MARKER_V1, MARKER_V2, SIGNATURE, Frame, Message, frames_of_datagram, message_of
 from mavlink.vehicle_state import VehicleState
@@ -22,7 +22,7 @@ class LoggedCapture:
 
     received_s: float
     stream: str
-    report: CaptureReport
+    report: CaptureMessage
     mission_item: int | None
 
 

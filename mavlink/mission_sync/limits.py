@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import AutopilotType
-from mavlink.intermediate_waypoints import FLOWN, length_on_sphere_m, position_of
+from mavlink.legs import FLOWN, length_on_sphere_m, position_of
 from mavlink.reasons import list_reason
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from operation.reasons import Reason

@@ -7,31 +7,35 @@ from missions.models.commands import (
     CommandKind,
     CommandPriority,
     CommandState,
+    OfferState,
+    PlannedStarts,
+    ReplanOffer,
+    StartsEnd,
     UavCommand,
     UavCommandEvent,
 )
 from missions.models.fleet import END_ACTIONS, Base, CredentialKind, LinkKind, Uav, UavCredential, UavState, UavType
 from missions.models.missions import (
     ENDED_STATES,
+    OBJECTIVES,
+    WAYPOINT_KINDS,
     InspectionTarget,
     Mission,
     MissionState,
     MissionUav,
-    Objective,
     Route,
     SavedSelection,
     TargetPriority,
     TargetState,
     Waypoint,
-    WaypointKind,
 )
-from missions.models.offers import OfferState, ReplanOffer
-from missions.models.starts import PlannedStarts, StartsEnd
 
 __all__ = [
     "ENDED_STATES",
     "END_ACTIONS",
+    "OBJECTIVES",
     "OPEN_COMMANDS",
+    "WAYPOINT_KINDS",
     "Approval",
     "Base",
     "CommandAxis",
@@ -44,7 +48,6 @@ __all__ = [
     "Mission",
     "MissionState",
     "MissionUav",
-    "Objective",
     "OfferState",
     "PlannedStarts",
     "ReplanOffer",
@@ -60,5 +63,4 @@ __all__ = [
     "UavState",
     "UavType",
     "Waypoint",
-    "WaypointKind",
 ]

@@ -1,4 +1,4 @@
-"""Approvals, which freeze what may be flown, and the outbox of commands."""
+"""Approvals, which freeze what may be flown, the outbox of commands, starts by the plan, and offers of another plan for the rest."""
 
 import uuid
 
@@ -163,3 +163,82 @@ class UavCommandEvent(models.Model):
 
     def __str__(self) -> str:
         return f"{self.state} {self.command_id}"
+
+
+class StartsEnd(models.TextChoices):
+    DONE = "done", "Every UAV was started or refused"
+    STOPPED = "stopped", "Stopped by a user"
+    COMMANDED = "commanded", "A UAV of the mission was told to stop, hold, return or land"
+    MISSION_OVER = "mission-over", "The mission is not on its way any more"
+    INTERRUPTED = "interrupted", "Nobody could look after it for too long"
+
+
+class PlannedStarts(models.Model):
+    """One run through a mission's starts. `uavs` has an entry for each, in order: see services/commands/planned_starts.py."""
+
+    id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="planned_starts")
+    created_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, related_name="+")
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    looked_at = models.DateTimeField(db_default=Now(), help_text="when its times were last compared with the clock")
+    ended_at = models.DateTimeField(null=True, blank=True)
+    ended_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    end = models.CharField(max_length=15, choices=StartsEnd.choices, blank=True, help_text="why it ended; empty: it goes on")
+    uavs = models.JSONField(default=list, help_text="UAV, place, due time, state, command, reason")
+
+    class Meta:
+        ordering = ["-created_at"]
+        verbose_name_plural = "planned starts"
+        constraints = [
+            models.UniqueConstraint(fields=["mission"], condition=Q(ended_at=None), name="planned_starts_one_open"),
+            models.CheckConstraint(condition=Q(end__in=["", *StartsEnd.values]), name="planned_starts_end_known"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.mission} {self.end or 'goes on'}"
+
+
+class OfferState(models.TextChoices):
+    COMPUTING = "computing", "Being worked out"
+    OPEN = "open", "Waits for a decision"
+    ACCEPTED = "accepted", "Accepted"
+    DECLINED = "declined", "Declined"
+    OUTDATED = "outdated", "Outdated"
+    IMPOSSIBLE = "impossible", "No way was found"
+
+
+class ReplanOffer(models.Model):
+    """A new assignment of the remaining targets, offered beside the flying plan. Nothing changes until a user confirms it.
+
+    A confirmed offer becomes a mission of its own that continues this one: a mission never mixes two plans.
+    """
+
+    id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="replan_offers")
+    code = models.CharField(max_length=50, help_text="why: uav-out, zone-active, battery-short, asked-for")
+    cause = models.JSONField(default=dict, blank=True, help_text="UAV, zone, figures of the cause")
+    state = models.CharField(max_length=12, choices=OfferState.choices, default=OfferState.COMPUTING)
+    difference = models.JSONField(default=dict, blank=True, help_text="what would change, per UAV and target")
+    continuation = models.OneToOneField(
+        Mission,
+        on_delete=models.SET_NULL,
+        null=True,
+        blank=True,
+        related_name="offered_by",
+        help_text="the planned mission that is offered",
+    )
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    decided_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    decided_at = models.DateTimeField(null=True, blank=True)
+    outcome = models.CharField(max_length=500, blank=True, help_text="why it is outdated or impossible, in English")
+    outcome_why = models.JSONField(null=True, blank=True, help_text="the same as reasons; see workspace/reason_texts.py")
+
+    class Meta:
+        ordering = ["-created_at"]
+        constraints = [
+            models.UniqueConstraint(fields=["mission"], condition=Q(state__in=["computing", "open"]), name="replan_offer_one_undecided"),
+            models.CheckConstraint(condition=Q(state__in=OfferState.values), name="replan_offer_state_known"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.code} {self.state}"

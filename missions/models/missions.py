@@ -10,7 +10,9 @@ from django.db.models.functions import Now
 
 from inspection.models import Asset
 from missions.models.fleet import END_ACTIONS, Uav
+from planning.problem import Objective
 from planning.request import EndAction
+from planning.trajectory.waypoints import WaypointKind
 from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
@@ -30,13 +32,14 @@ class MissionState(models.TextChoices):
 
 
 ENDED_STATES = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
-
-
-class Objective(models.TextChoices):
-    TOTAL = "total", "Fly least"
-    MAKESPAN = "makespan", "Even routes"
-    TIME = "time", "Least flying time"
-    ENERGY = "energy", "Least energy"
+OBJECTIVES = [
+    (Objective.TOTAL.value, "Fly least"), (Objective.MAKESPAN.value, "Even routes"), (Objective.TIME.value, "Least flying time"),
+    (Objective.ENERGY.value, "Least energy"),
+]  # fmt: skip
+WAYPOINT_KINDS = [
+    (WaypointKind.START.value, "Start"), (WaypointKind.PASS.value, "Pass"), (WaypointKind.TARGET.value, "Target"),
+    (WaypointKind.END.value, "End"), (WaypointKind.BASE.value, "Between two flights"),
+]  # fmt: skip
 
 
 class Mission(models.Model):
@@ -47,7 +50,7 @@ class Mission(models.Model):
     name = models.CharField(max_length=MAX_NAME_LENGTH)
     author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="missions")
     state = models.CharField(max_length=20, choices=MissionState.choices, default=MissionState.DRAFT)
-    objective = models.CharField(max_length=10, choices=Objective.choices, default=Objective.TOTAL)
+    objective = models.CharField(max_length=10, choices=OBJECTIVES, default=Objective.TOTAL.value)
     return_to_start = models.BooleanField(default=False)
     departs_at = models.DateTimeField(null=True, blank=True, help_text="planned take-off; empty = at any time")
     conditions = models.JSONField(default=dict, blank=True, help_text="wind by height and temperature; see planning/energy/conditions.py")
@@ -274,20 +277,12 @@ class Route(models.Model):
         return f"{self.mission_uav} in {self.mission}"
 
 
-class WaypointKind(models.TextChoices):
-    START = "start", "Start"
-    PASS = "pass", "Pass"
-    TARGET = "target", "Target"
-    END = "end", "End"
-    BASE = "base", "Between two flights"
-
-
 class Waypoint(models.Model):
     """One point of a route with its height over three references; relative is above the take-off point."""
 
     route = models.ForeignKey(Route, on_delete=models.CASCADE, related_name="waypoints")
     sequence = models.PositiveIntegerField()
-    kind = models.CharField(max_length=10, choices=WaypointKind.choices)
+    kind = models.CharField(max_length=10, choices=WAYPOINT_KINDS)
     position = models.PointField(srid=4326)
     asset = models.ForeignKey(Asset, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     target = models.ForeignKey(InspectionTarget, on_delete=models.CASCADE, null=True, blank=True, related_name="waypoints")

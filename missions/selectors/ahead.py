@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from inspection.geodesy import LonLat
-from missions.models import InspectionTarget, Mission, Route, TargetState, Uav, Waypoint, WaypointKind
+from missions.models import InspectionTarget, Mission, Route, TargetState, Uav, Waypoint
 from missions.selectors.zones import flown_route
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
+from planning.trajectory.waypoints import WaypointKind
 
 RECEIVED_WITHIN_S = 30.0  # an older position counts as unknown
 OFF_ROUTE_M = 100.0

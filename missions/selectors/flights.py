@@ -10,10 +10,11 @@ import numpy as np
 from django.conf import settings
 from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F, Value
 
-from missions.models import Mission, MissionState, Route, Waypoint, WaypointKind
+from missions.models import Mission, MissionState, Route, Waypoint
 from planning.context import OtherFlights
 from planning.request import EndAction
 from planning.separation.separation import TimedRoute
+from planning.trajectory.waypoints import WaypointKind
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 STILL_FLOWN: dict[str, Any] = {"geometry__isnull": False, "continued_by": None}  # of routes; the rest belongs to another mission

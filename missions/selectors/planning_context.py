@@ -9,9 +9,8 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.selectors.ground import DatasetVersion
-from inspection.selectors.node_ground import node_ground_m
 from inspection.selectors.planning import PlanningGround, heights_at, planning_read, terrain_at
-from inspection.selectors.terrain import tiles_around
+from inspection.selectors.terrain import node_ground_m, tiles_around
 from inspection.terrain.profile import profile_under
 from missions.hooks.in_air import uavs_in_the_air
 from missions.models import UavState

@@ -12,11 +12,12 @@ from django.utils.translation import gettext as _
 
 from inspection.models import Asset
 from inspection.selectors import ground_heights_m, ground_revision
-from missions.models import Base, Mission, MissionState, Route, WaypointKind
+from missions.models import Base, Mission, MissionState, Route
 from missions.selectors.ahead import WayAhead, ways_ahead
 from missions.selectors.uav_changes import UavChange, uav_change_words
 from missions.selectors.zones import MetZone, departure_s, flown_route, zones_met
 from planning.clearance.zone_clearance import TAKE_OFF, FloatArray, FlownRoute
+from planning.trajectory.waypoints import WaypointKind
 
 TERRAIN_CHANGED_M = 1.0  # smaller differences come from another sampling of the same terrain
 MAX_CAUSES = 20

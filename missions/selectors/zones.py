@@ -9,7 +9,7 @@ import numpy as np
 from django.conf import settings
 
 from inspection.selectors.zone_table import zone_table
-from inspection.zones.activity import Span, active_spans, merged
+from inspection.zones.activity import TimeSpan, active_spans, merged
 from inspection.zones.reach import ZoneTable
 from inspection.zones.schedule import Schedule
 from missions.models import Mission, Route
@@ -25,7 +25,7 @@ LegTime = tuple[float, float]  # from when to when a leg is flown, in seconds af
 
 def blocked_departures(
     legs: Iterable[LegTime], spans: Iterable[tuple[float, float]], margin_s: float, from_s: float, to_s: float
-) -> tuple[Span, ...]:
+) -> tuple[TimeSpan, ...]:
     """Return the departures between two moments at which a leg would be flown while a zone applies, margin included.
 
     A leg flown from a to b after departure meets a span from s to e (e excluded) if the departure is in [s - b, e - a). The margin extends
@@ -33,22 +33,22 @@ def blocked_departures(
     """
     times = set(legs)
     return merged(
-        Span(max(float(math.floor(start - margin_s - last_s)), from_s), min(float(math.ceil(end + margin_s - first_s)), to_s))
+        TimeSpan(max(float(math.floor(start - margin_s - last_s)), from_s), min(float(math.ceil(end + margin_s - first_s)), to_s))
         for start, end in spans
         for first_s, last_s in times
     )
 
 
-def free_between(blocked: Iterable[Span], from_s: float, to_s: float) -> tuple[Span, ...]:
+def free_between(blocked: Iterable[TimeSpan], from_s: float, to_s: float) -> tuple[TimeSpan, ...]:
     """Return the time between two moments that the spans leave free."""
-    free: list[Span] = []
+    free: list[TimeSpan] = []
     open_s = from_s
     for span in merged(blocked):
         if span.from_s > open_s:
-            free.append(Span(open_s, min(span.from_s, to_s)))
+            free.append(TimeSpan(open_s, min(span.from_s, to_s)))
         open_s = max(open_s, span.to_s)
     if open_s < to_s:
-        free.append(Span(open_s, to_s))
+        free.append(TimeSpan(open_s, to_s))
     return tuple(free)
 
 
@@ -100,7 +100,7 @@ class BlockingZone:
     zone: int
     name: str
     schedule: Schedule | None
-    blocked: tuple[Span, ...]
+    blocked: tuple[TimeSpan, ...]
     legs: tuple[tuple[int, int], ...]
 
 
@@ -108,7 +108,7 @@ class BlockingZone:
 class LegalWindows:
     """Departure windows between two moments, and the zones that block the rest."""
 
-    windows: tuple[Span, ...]
+    windows: tuple[TimeSpan, ...]
     zones: tuple[BlockingZone, ...]
 
 

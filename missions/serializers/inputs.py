@@ -10,7 +10,7 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.models import END_ACTIONS, Objective, TargetPriority, Uav
+from missions.models import END_ACTIONS, OBJECTIVES, TargetPriority, Uav
 from missions.reason_texts import fault_texts
 from missions.selectors.fleet import FIGURES, figures_of, uavs_of_organisation
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -56,7 +56,7 @@ from planning.energy.performance import (
     InvalidPerformance,
     performance_from_json,
 )
-from planning.problem import Objective as RoutingObjective
+from planning.problem import Objective
 from planning.request import GO_ON, EndAction, LostLinkRequest, lost_link_from_json
 from planning.task import DEFAULT_HOLD_S, MAX_HOLD_S, VIEWS_HOLD_S, VIEWS_HOLDS_S, Task, TaskKind
 from workspace.api import strict_serializers as serializers
@@ -232,7 +232,7 @@ class OptionsSerializer(KnownFieldsSerializer):
     uavs = UavInputSerializer(many=True, required=False)
     targets = TargetInputSerializer(many=True, required=False)
     objective = serializers.ChoiceField(
-        choices=Objective.choices,
+        choices=OBJECTIVES,
         required=False,
         help_text="total: fly least; makespan: finish soonest; time: least flying time of all; energy: least Wh",
     )
@@ -278,7 +278,7 @@ class OptionsSerializer(KnownFieldsSerializer):
         if "targets" in attrs:
             attrs["targets"] = tuple(_target_request(target) for target in attrs["targets"])
         if "objective" in attrs:
-            attrs["objective"] = RoutingObjective(attrs["objective"])
+            attrs["objective"] = Objective(attrs["objective"])
         return attrs
 
     def _uav_requests(self, uavs: list[dict[str, Any]]) -> tuple[UavRequest, ...]:
@@ -423,7 +423,7 @@ def plan_request(values: dict[str, Any]) -> PlanRequest:
     return PlanRequest(
         uavs=values.get("uavs", ()),
         targets=values.get("targets", ()),
-        objective=values.get("objective", RoutingObjective.TOTAL),
+        objective=values.get("objective", Objective.TOTAL),
         return_to_start=values.get("return_to_start", False),
         locks=values.get("locks", ()),
         bases=values.get("bases", ()),

@@ -18,7 +18,7 @@ UNKNOWN_NAMED = "unknown_fields_told"
 _of_thread = threading.local()  # `serializers`: by class, with their fields built
 
 
-class _Read(NamedTuple):
+class _KnownField(NamedTuple):
     """A field that a body may name; `validate` is the serializer's `validate_...` method for it."""
 
     field: serializers.Field
@@ -83,9 +83,9 @@ class KnownFieldsSerializer(serializers.Serializer):
             raise serializers.ValidationError(serializers.as_serializer_error(error)) from error
 
     @cached_property
-    def _reads(self) -> dict[str, _Read]:
+    def _reads(self) -> dict[str, _KnownField]:
         return {
-            name: _Read(field, getattr(self, f"validate_{name}", None), not field.required and field.default is empty)
+            name: _KnownField(field, getattr(self, f"validate_{name}", None), not field.required and field.default is empty)
             for name, field in self.fields.items()
             if not field.read_only
         }

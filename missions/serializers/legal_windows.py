@@ -9,7 +9,7 @@ from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
 
 from inspection.serializers.zones import ScheduleField, schedule_sentence
-from inspection.zones.activity import Span
+from inspection.zones.activity import TimeSpan
 from missions.fields import PositionField
 from missions.models import END_ACTIONS
 from missions.selectors.zones import LegalWindows
@@ -120,7 +120,7 @@ class LegalWindowsSerializer(TimeSpanSerializer):
     zones = BlockingZoneSerializer(many=True, help_text="that the routes meet in space and height, at whatever time")
 
 
-def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict[str, Any]:
+def legal_windows_json(found: LegalWindows, span: TimeSpan, uavs: list[int]) -> dict[str, Any]:
     """Return legal windows as JSON. uavs: for each route the index of its UAV."""
     return _span_json(span) | {
         "margin_s": settings.ZONE_RULES.time_margin_s,
@@ -140,7 +140,7 @@ def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict
     }
 
 
-def _span_json(span: Span) -> dict[str, datetime]:
+def _span_json(span: TimeSpan) -> dict[str, datetime]:
     return {"from": datetime.fromtimestamp(span.from_s, UTC), "to": datetime.fromtimestamp(span.to_s, UTC)}
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from inspection.selectors import asset_detail, asset_label
-from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
+from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint
 from missions.reason_texts import with_texts
 from missions.selectors.mission_list import ListedMission, sketch
 from missions.selectors.missions import approval_in_force, open_plan_of_mission
@@ -19,7 +19,7 @@ from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.energy.performance import performance_from_json, performance_to_json
 from planning.plan_json import straight_json
 from planning.request import EndAction, lost_link_from_json, lost_link_to_json
-from planning.trajectory.waypoints import KINDS, NONE
+from planning.trajectory.waypoints import KINDS, NONE, WaypointKind
 from workspace.reason_texts import why_text
 
 

@@ -3,12 +3,12 @@
 from rest_framework import serializers
 
 from missions.fields import ColoursField, PositionField
-from missions.models import END_ACTIONS, MissionState, Objective, TargetPriority, TargetState, WaypointKind
+from missions.models import END_ACTIONS, OBJECTIVES, WAYPOINT_KINDS, MissionState, TargetPriority, TargetState
 from missions.selectors.fleet import FIGURES
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
 from missions.serializers.view_plans import ViewSerializer, ViewsSerializer
-from planning.clearance.lost_link import LostLink, Trouble
+from planning.clearance.lost_link import LostLink, ReturnTrouble
 from planning.task import TaskKind
 from workspace.api.external_data import AttributesField
 from workspace.api.fields import WhySerializer
@@ -29,7 +29,7 @@ class TaskOutputSerializer(serializers.Serializer):
 
 class WaypointSerializer(serializers.Serializer):
     position = PositionField()
-    kind = serializers.ChoiceField(choices=WaypointKind.choices)
+    kind = serializers.ChoiceField(choices=WAYPOINT_KINDS)
     asset = serializers.IntegerField(allow_null=True)
     target = serializers.IntegerField(allow_null=True, help_text="index of the target; a stretch's further vertices carry it too")
     task = TaskOutputSerializer(allow_null=True)
@@ -208,7 +208,7 @@ class FailedReturnSerializer(serializers.Serializer):
     route = serializers.IntegerField(help_text="index of the UAV")
     waypoint = serializers.IntegerField(help_text="its place in the route")
     return_point = serializers.IntegerField(help_text="where it would return to: 0 its start, n the n-th rally point")
-    trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
+    trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in ReturnTrouble])
     missing_wh = serializers.FloatField(allow_null=True)
     zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")
     zone_id = serializers.IntegerField(allow_null=True, required=False, help_text="its id; not there in checks of before")
@@ -240,7 +240,7 @@ class LostLinkCheckSerializer(LostLinkOutputSerializer):
 
 
 class PlanSerializer(QualitySerializer):
-    objective = serializers.ChoiceField(choices=Objective.choices)
+    objective = serializers.ChoiceField(choices=OBJECTIVES)
     return_to_start = serializers.BooleanField()
     total_length_m = serializers.FloatField()
     longest_route_m = serializers.FloatField()
@@ -292,7 +292,7 @@ class LastPlanSerializer(serializers.Serializer):
     """The plan that the current one replaced, for comparison."""
 
     planned_at = serializers.DateTimeField()
-    objective = serializers.ChoiceField(choices=Objective.choices)
+    objective = serializers.ChoiceField(choices=OBJECTIVES)
     return_to_start = serializers.BooleanField()
     total_length_m = serializers.FloatField()
     duration_s = serializers.FloatField(help_text="from the departure until the last UAV has ended its route")
@@ -357,7 +357,7 @@ class MissionSerializer(serializers.Serializer):
     attributes = AttributesField(required=True, help_text="of other systems")
     state = serializers.ChoiceField(choices=MissionState.choices)
     author = serializers.CharField(allow_null=True)
-    objective = serializers.ChoiceField(choices=Objective.choices)
+    objective = serializers.ChoiceField(choices=OBJECTIVES)
     return_to_start = serializers.BooleanField()
     departs_at = serializers.DateTimeField(allow_null=True, help_text="planned take-off; null: at any time")
     simulates = serializers.UUIDField(allow_null=True, help_text="the mission of which it is a copy that simulated twins fly")

@@ -5,8 +5,8 @@ from missions.selectors.resolved_targets import resolved_targets
 from missions.services.fleet.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet.rows import (
     FleetChanged,
+    FleetNameTaken,
     FleetRowInUse,
-    NameTaken,
     NotDeleted,
     SystemIdQuota,
     SystemIdTaken,
@@ -41,8 +41,7 @@ from missions.services.missions import (
     restore_mission,
 )
 from missions.services.planning.explanations import explain_route, explain_unreached_target
-from missions.services.planning.planner import GraphOutdated, make_plan
-from missions.services.planning.warm_up import warm_up
+from missions.services.planning.planner import GraphOutdated, make_plan, warm_up
 from planning.assignment.options import refuse_contradictions
 from planning.plan_json import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
 from planning.request import (
@@ -70,6 +69,7 @@ __all__ = [
     "Departure",
     "EditedPoint",
     "FleetChanged",
+    "FleetNameTaken",
     "FleetRowInUse",
     "GraphOutdated",
     "InvalidRequest",
@@ -77,7 +77,6 @@ __all__ = [
     "MissionChange",
     "MissionChanged",
     "MissionFrozen",
-    "NameTaken",
     "NotDeleted",
     "NothingToPlan",
     "PlanRequest",

@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 
 from inspection.geodesy import distance_m
-from missions.models import InspectionTarget, Mission, Route, Waypoint, WaypointKind
+from missions.models import InspectionTarget, Mission, Route, Waypoint
 from missions.services.manual_edits.legs import hand_legs_json
 from planning.request import EndAction
+from planning.trajectory.waypoints import WaypointKind
 
 OFF_NETWORK = {WaypointKind.START, WaypointKind.END}
 

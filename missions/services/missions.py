@@ -14,8 +14,8 @@ from django.utils import timezone
 from inspection.geodesy import LonLat
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav
 from missions.selectors.resolved_targets import resolved_targets
-from missions.services.approval.lost_link import lost_link_of_stored
 from missions.services.last_plan import summary_of_plan
+from missions.services.stored_routes import lost_link_of_stored
 from planning.assignment.options import refuse_contradictions
 from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
 from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json

@@ -17,11 +17,12 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.models import Asset
 from inspection.selectors.planning import DatasetVersion, current_dataset_version
 from missions.hooks.taken_photos import PhotoOfMission, RehearsedPhotos, achieved_photos, rehearsed_photos
-from missions.models import InspectionTarget, Mission, WaypointKind
+from missions.models import InspectionTarget, Mission
 from missions.selectors.photo_flights import KEPT_S, kept_by
 from missions.selectors.tower_sites import TowerOnMap, tower_on_map
 from missions.services.view_plans import coverage_json
 from planning.task import MM_PER_M, ViewsRequest, task_from_json
+from planning.trajectory.waypoints import WaypointKind
 from planning.views.proof import MAX_AWAY_M, ProofSurface, TakenPhoto, flown_camera, proof_surface, why_not_counted
 from planning.views.visibility import axes_of
 from workspace.cache_unavailable import CACHE_UNAVAILABLE

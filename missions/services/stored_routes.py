@@ -1,10 +1,16 @@
-"""Stored routes of a mission in the planner's types."""
+"""Stored routes of a mission in the planner's types, and where the lost-link action could not be done on them."""
+
+from typing import Any
 
 import numpy as np
 
 from inspection.geodesy import LonLat
+from inspection.selectors.planning import planning_read
 from missions.models import Mission, Route, Waypoint
+from missions.selectors.planning_context import planning_context
+from planning.checks.lost_link import lost_link_check
 from planning.plan import PlannedRoute
+from planning.request import PlanRequest
 from planning.task import task_from_json
 from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
@@ -59,3 +65,14 @@ def _column(rows: list[Waypoint], name: str) -> np.ndarray[tuple[int, ...], np.d
     """Return a column of the waypoints; None where a waypoint has no value."""
     values = [getattr(row, name) for row in rows]
     return None if any(value is None for value in values) else np.array(values, dtype=np.float64)
+
+
+def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any] | None:
+    """Return the check of a mission's stored routes with the current zones; None where it has no routes or their times are unknown.
+
+    request: the mission's stored request. Raises NoGraph.
+    """
+    routes = stored_routes(mission)
+    if routes is None:
+        return None
+    return lost_link_check(request, routes, planning_context(request, planning_read().ground()))

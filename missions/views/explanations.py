@@ -12,7 +12,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions import services
-from missions.models import Mission, WaypointKind
+from missions.models import Mission
 from missions.reason_texts import fault_texts
 from missions.selectors.planning_context import stored_bases
 from missions.serializers import explanations
@@ -23,6 +23,7 @@ from missions.views.missions import mission_or_404
 from missions.views.plans import is_small
 from missions.views.problems import api_problems
 from planning.request import InvalidRequest, PlanRequest
+from planning.trajectory.waypoints import WaypointKind
 from workspace.api.errors import ApiProblem
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate

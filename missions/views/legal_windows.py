@@ -12,7 +12,7 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.zones.activity import Span
+from inspection.zones.activity import TimeSpan
 from missions.selectors.zones import flown_route, legal_windows
 from missions.serializers.inputs import MAX_DAYS_AHEAD
 from missions.serializers.legal_windows import LegalWindowsInputSerializer, LegalWindowsSerializer, legal_windows_json
@@ -75,10 +75,10 @@ def _moment(text: str) -> datetime:
     return moment
 
 
-def _window(begin: datetime | None) -> Span:
+def _window(begin: datetime | None) -> TimeSpan:
     """Return the window of departures, in whole seconds."""
     begin = begin or timezone.now()
     if abs((begin - timezone.now()).days) > MAX_DAYS_AHEAD:
         raise serializers.ValidationError({"from": [_("A departure lies within two years of today.")]})
     from_s = float(math.floor(begin.timestamp()))
-    return Span(from_s, from_s + AHEAD_S)
+    return TimeSpan(from_s, from_s + AHEAD_S)

@@ -26,8 +26,8 @@ from workspace.api.renderers import FastJSONRenderer
 from workspace.api.schema import request_example
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
-from workspace.api.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
 from workspace.jobs.services import TooManyJobs, create_job_within, refuse_jobs_beyond
+from workspace.jobs.views import NoRoomToWait, preferred_wait_s, wait_for_job
 from workspace.models import Job, JobState, Role, User
 from workspace.reason_texts import with_message
 from workspace.tasks import send_job_on_commit
@@ -55,7 +55,7 @@ PREFER = OpenApiParameter(
 )
 
 
-class Reachability(APIView):
+class ReachableAssets(APIView):
     write_roles = frozenset(Role)
     renderer_classes = [FastJSONRenderer]
     throttle_classes = [ScopedRate]

@@ -13,12 +13,12 @@ from missions.reason_texts import fault_texts
 from missions.selectors.fleet import last_change
 from missions.services import (
     FleetChanged,
+    FleetNameTaken,
     FleetRowInUse,
     GraphOutdated,
     InvalidRequest,
     MissionChanged,
     MissionFrozen,
-    NameTaken,
     NotDeleted,
     NothingToPlan,
     SystemIdQuota,
@@ -43,7 +43,7 @@ def fleet_problems(current: Callable[[], Any] | None = None) -> Iterator[None]:
     """Translate errors of fleet services. current: returns the current row for a client with an outdated one; None where it is deleted."""
     try:
         yield
-    except NameTaken as error:
+    except FleetNameTaken as error:
         messages = {
             "uav": _("Another UAV has this name."), "uav_type": _("Another type has this name."), "base": _("Another base has this name.")
         }  # fmt: skip

@@ -14,7 +14,7 @@ from planning.plan import PlannedRoute
 from planning.problem import RANGE_RESERVE
 from planning.request import PlanRequest
 from planning.solver.cheapest_route import LeastRoutes
-from planning.solver.cost_matrices import NO_PATH_M, Kind
+from planning.solver.cost_matrices import NO_PATH_M, QuantityKind
 from planning.trajectory.sorties import wh_of_sorties
 
 IsClear = Callable[[PlannedRoute], bool]
@@ -52,8 +52,8 @@ class LeastShortfalls:
     def __init__(self, found: CandidatePlan, is_clear: IsClear | None = None) -> None:
         self.request, self.found, self.is_clear = found.request, found, is_clear
         free = replace(found.problem, allowed=None)
-        self._metres = LeastRoutes(free, Kind.METRES)
-        self._wh = self._metres if found.problem.wh is None else LeastRoutes(free, Kind.WH)
+        self._metres = LeastRoutes(free, QuantityKind.METRES)
+        self._wh = self._metres if found.problem.wh is None else LeastRoutes(free, QuantityKind.WH)
         self._visits = found.problem.visits_of_target()
         self._number = {one.target: number for number, one in enumerate(found.drawing.targets)}
         self._drawn = 0

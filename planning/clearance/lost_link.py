@@ -33,7 +33,7 @@ class LostLink(StrEnum):
     RETURN = "return"
 
 
-class Trouble(StrEnum):
+class ReturnTrouble(StrEnum):
     BATTERY = "battery"
     WIND = "wind"
     ZONE = "zone"
@@ -62,7 +62,7 @@ class FailedReturn:
 
     waypoint: int
     return_point: int
-    trouble: Trouble
+    trouble: ReturnTrouble
     missing_wh: float | None = None
     zone: int | None = None
     over_m: float | None = None
@@ -133,27 +133,27 @@ def checked_returns(
         if waypoints.points.kind[one.waypoint] == BASE:  # it stands there, with a new battery
             continue
         if np.isnan(one.ground_m).any() or top_m == math.inf:
-            failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.UNKNOWN_GROUND))
+            failed.append(FailedReturn(one.waypoint, one.return_point, ReturnTrouble.UNKNOWN_GROUND))
             continue
         over_ground_m = max(_amsl_m(one, waypoints), float(one.ground_m.max()) + rules.transit_agl_m)
         level_m = max(over_ground_m, top_m + rules.clearance_m)
         most_m = float(one.ground_m.min()) + rules.max_agl_m + HEIGHT_ROUNDING_M
         if level_m > most_m:
-            trouble = Trouble.TOO_HIGH if over_ground_m > most_m else Trouble.OBSTACLE
+            trouble = ReturnTrouble.TOO_HIGH if over_ground_m > most_m else ReturnTrouble.OBSTACLE
             failed.append(FailedReturn(one.waypoint, one.return_point, trouble, over_m=level_m - most_m + HEIGHT_ROUNDING_M))
         else:
             levels_m.append(level_m)
         taken = _taken(one, waypoints, level_m, hold_s, air)
         if math.isinf(taken[-1][0]):
-            failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.WIND))
+            failed.append(FailedReturn(one.waypoint, one.return_point, ReturnTrouble.WIND))
         elif performance.usable_wh is not None and taken_wh is not None:
             missing_wh = float(taken_wh[one.waypoint]) + taken[-1][1] / J_PER_WH - performance.usable_wh
             if missing_wh > 0.0:
-                failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.BATTERY, missing_wh=missing_wh))
+                failed.append(FailedReturn(one.waypoint, one.return_point, ReturnTrouble.BATTERY, missing_wh=missing_wh))
         start_s = None if departs_s is None else departs_s + float(clock.arrival_s[one.waypoint])
         flown = _flown(one, waypoints, level_m, start_s, [seconds for seconds, _ in taken])
         met = dict.fromkeys(breach.zone for breach in breaches(flown, around.zones, around.margins) if breach.leg != TAKE_OFF)
-        failed += [FailedReturn(one.waypoint, one.return_point, Trouble.ZONE, zone=zone) for zone in met]
+        failed += [FailedReturn(one.waypoint, one.return_point, ReturnTrouble.ZONE, zone=zone) for zone in met]
     # The first waypoint stands over the start; from home the ground is told by what is above sea level less what is above home.
     stands_m = float(returns[0].ground_m[0]) if plan.home is None else _home_m(waypoints)
     highest_m = max(levels_m, default=math.nan) - stands_m

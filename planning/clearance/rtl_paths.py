@@ -71,7 +71,7 @@ class ReturnPoint:
 
 
 @dataclass(frozen=True)
-class Trouble:
+class RtlObstruction:
     """From the one waypoint to the other (on the way to the first already) something is in the way home.
 
     `level_m`: how high above the take-off it would fly, at its lowest. `zone` is a row of the zones. `to_end`: up to the flight's end.
@@ -140,7 +140,7 @@ class RtlPaths:
         """How high above the ground it would come anywhere."""
         return float(np.max(levels_m - self._lowest_m, initial=-np.inf))
 
-    def troubles(self, levels_m: FloatArray) -> list[Trouble]:
+    def obstructions(self, levels_m: FloatArray) -> list[RtlObstruction]:
         """By kind and zone, from the first place on at which there is any."""
         found: list[tuple[InTheWay, int | None, BoolArray]] = [
             (InTheWay.UNKNOWN_GROUND, None, self._is_unknown),
@@ -148,13 +148,13 @@ class RtlPaths:
             (InTheWay.OBSTACLE, None, ~self._is_unknown & (levels_m < self._over_tops_m)),
             *((InTheWay.ZONE, zone, meets) for zone, meets in self._zones_met(levels_m).items()),
         ]
-        return [self._trouble(kind, zone, meets, levels_m) for kind, zone, meets in found if meets.any()]
+        return [self._obstruction(kind, zone, meets, levels_m) for kind, zone, meets in found if meets.any()]
 
-    def _trouble(self, kind: InTheWay, zone: int | None, meets: BoolArray, levels_m: FloatArray) -> Trouble:
+    def _obstruction(self, kind: InTheWay, zone: int | None, meets: BoolArray, levels_m: FloatArray) -> RtlObstruction:
         rows = np.flatnonzero(meets)
         first, last = int(self.places.waypoint[rows[0]]), int(self.places.waypoint[rows[-1]])
         to_end = bool(rows[-1] == len(levels_m) - 1)
-        return Trouble(kind, first, last, to_end, float(levels_m[rows].min()), self.return_point.is_rally, zone)
+        return RtlObstruction(kind, first, last, to_end, float(levels_m[rows].min()), self.return_point.is_rally, zone)
 
     def _zones_met(self, levels_m: FloatArray) -> dict[int, BoolArray]:
         """By zone: from which places."""

@@ -20,7 +20,7 @@ from planning.solver.reach import least_needs, needed_range_m
 NO_PATH = "no_path"  # the code of the reason that no UAV has a path
 
 
-class Limit(StrEnum):
+class UavLimit(StrEnum):
     """In the order in which they are listed; codes of reasons."""
 
     GROUNDED = "cannot_take_off"
@@ -32,7 +32,7 @@ class Limit(StrEnum):
     WIRES = "wires_for"
 
 
-_OWN_LIMIT = {UnassignedReason.NO_PATH.value: Limit.NO_PATH, WIND: Limit.WIND}
+_OWN_LIMIT = {UnassignedReason.NO_PATH.value: UavLimit.NO_PATH, WIND: UavLimit.WIND}
 _EXPLAINED = {
     UnassignedReason.BEYOND_RANGE.value,
     UnassignedReason.BEYOND_ENERGY.value,
@@ -65,7 +65,7 @@ def with_other_limits(found: CandidatePlan) -> list[UnassignedTarget]:
 
 
 def _reported(item: UnassignedTarget, request: PlanRequest, limits: "_Limits") -> UnassignedTarget:
-    of_kind: dict[Limit, list[str]] = {}
+    of_kind: dict[UavLimit, list[str]] = {}
     for uav in range(len(request.uavs)):
         limit = None if uav in item.uavs else limits.of(uav, item.target)
         if limit is not None:
@@ -76,7 +76,7 @@ def _reported(item: UnassignedTarget, request: PlanRequest, limits: "_Limits") -
     why = item.why
     if own is not None and item.is_for(NO_PATH):  # it is not so of every UAV
         why = (Reason("no_path_for_uavs", {"uavs": own}),)
-    others = [Reason(limit.value, {"uavs": of_kind[limit]}) for limit in Limit if limit in of_kind]
+    others = [Reason(limit.value, {"uavs": of_kind[limit]}) for limit in UavLimit if limit in of_kind]
     return replace(item, why=(*why, Reason("other_uavs", {"limits": others})))
 
 
@@ -96,34 +96,34 @@ class _Limits:
         self._needed_m, self._used_wh = least_needs(self._free, needed_range_m(self._free), visits)
         self._in_calm: BoolArray | None = None
 
-    def of(self, uav: int, target: int) -> Limit | None:
+    def of(self, uav: int, target: int) -> UavLimit | None:
         """None where it could do the target alone."""
         return next(self._limits(uav, target), None)
 
-    def _limits(self, uav: int, target: int) -> Iterator[Limit]:
+    def _limits(self, uav: int, target: int) -> Iterator[UavLimit]:
         if uav in self.found.grounded:
-            yield Limit.GROUNDED
+            yield UavLimit.GROUNDED
         elif not has_sensor(self.request.uavs[uav], self.request.targets[target].sensor):
-            yield Limit.NO_SENSOR
+            yield UavLimit.NO_SENSOR
         if uav not in self.found.uavs or target not in self._visits:
             return
         start, visits = self.found.uavs.index(uav), self._visits[target]
         limits, needed_m = self.found.problem.uavs[start], self._needed_m[start, visits]
         if not np.isfinite(needed_m).any():
-            yield Limit.WIND if self._is_in_reach_in_calm(start, visits) else Limit.NO_PATH
+            yield UavLimit.WIND if self._is_in_reach_in_calm(start, visits) else UavLimit.NO_PATH
         within = needed_m <= limits.limit_m
         if not within.any():
-            yield Limit.RANGE
+            yield UavLimit.RANGE
         usable_wh = self.request.uavs[uav].performance.usable_wh
         if self._used_wh is not None and usable_wh is not None and not (self._used_wh[start, visits][within] <= limits.limit_wh).any():
-            yield Limit.BATTERY
+            yield UavLimit.BATTERY
         allowed = self.found.problem.allowed
         if allowed is not None and not allowed[start, visits].any():  # kept from it, as its route was drawn
             shortfall = self._lacks.of_battery(target, only=uav)
             if (target, uav) in self._lacks.barred and shortfall is None:
-                yield Limit.WIRES
+                yield UavLimit.WIRES
             if shortfall is not None and shortfall.missing > 0.0:
-                yield Limit.BATTERY
+                yield UavLimit.BATTERY
 
     def _is_in_reach_in_calm(self, start: int, visits: Sequence[int]) -> bool:
         if self._free.seconds is None:

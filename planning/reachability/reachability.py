@@ -49,7 +49,7 @@ TRIED_LEGS = (1, 8, 64)  # of the nearest to each part of the network: more, whe
 
 
 @dataclass(frozen=True)
-class Flight:
+class PossibleFlight:
     """A UAV that could take off at a place. Without a class of flight neither battery nor wind are looked at."""
 
     position: LonLat
@@ -87,7 +87,7 @@ class FlownNetwork:
 
 def reach(
     flown: FlownNetwork,
-    flights: Sequence[Flight],
+    flights: Sequence[PossibleFlight],
     bases: Sequence[LonLat],
     rules: AccessRules,
     *,
@@ -170,7 +170,7 @@ def _zones_at(zones: ZoneIndex, position: FloatArray, clearance_m: float) -> NDA
 def _reach_of_nodes(
     graph: InspectionGraph,
     zones: ZoneIndex,
-    flights: Sequence[Flight],
+    flights: Sequence[PossibleFlight],
     bases: Sequence[LonLat],
     rules: AccessRules,
     conditions: Conditions,
@@ -224,7 +224,7 @@ def _reach_of_nodes(
     )
 
 
-def _alike(flights: Sequence[Flight]) -> dict[tuple[LonLat, FlightClass | None], list[int]]:
+def _alike(flights: Sequence[PossibleFlight]) -> dict[tuple[LonLat, FlightClass | None], list[int]]:
     """Flights by the place that they start at and how they fly, so that ways are found once for all of them."""
     alike: dict[tuple[LonLat, FlightClass | None], list[int]] = {}
     for number, one in enumerate(flights):
@@ -380,7 +380,7 @@ class _Scene:
             self._straight(place, ways, flying)
         return ways
 
-    def needed_wh(self, there: _Paths, back: _Paths | None, one: Flight) -> FloatArray:
+    def needed_wh(self, there: _Paths, back: _Paths | None, one: PossibleFlight) -> FloatArray:
         """Of the battery, from take-off to the end; inf where the wind is too strong, or there is no way; 0 where nothing is counted."""
         if there.taken is None or one.flying is None:
             return np.where(np.isfinite(there.length_m), 0.0, np.inf)

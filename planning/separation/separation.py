@@ -145,7 +145,7 @@ class Encounter:
 
 
 @dataclass(frozen=True, eq=False)
-class _Flown:
+class _IndexedRoute:
     """A route as compiled code reads it."""
 
     route: TimedRoute
@@ -153,25 +153,25 @@ class _Flown:
     tree: FloatArray
     leg: IntArray
 
-    def delayed(self, delay_s: float) -> "_Flown":
+    def delayed(self, delay_s: float) -> "_IndexedRoute":
         if delay_s == 0.0:
             return self
         pieces, tree = self.pieces.copy(), self.tree.copy()
         pieces[:, 3::4] += delay_s
         tree[:, 3::4] += delay_s
-        return _Flown(self.route.delayed(delay_s), pieces, tree, self.leg)
+        return _IndexedRoute(self.route.delayed(delay_s), pieces, tree, self.leg)
 
 
-def _flown(route: TimedRoute, about_lon: float) -> _Flown:
+def _flown(route: TimedRoute, about_lon: float) -> _IndexedRoute:
     pieces, leg = route.pieces(about_lon)
-    return _Flown(route, pieces, box_tree(pieces), leg)
+    return _IndexedRoute(route, pieces, box_tree(pieces), leg)
 
 
 def _about_lon(routes: Sequence[TimedRoute]) -> float:
     return next((float(route.position[0, 0]) for route in routes if len(route.position)), 0.0)
 
 
-def _encounter(one: _Flown, other: _Flown, rules: SeparationRules, below_s: float) -> Encounter | None:
+def _encounter(one: _IndexedRoute, other: _IndexedRoute, rules: SeparationRules, below_s: float) -> Encounter | None:
     seconds, metres, vertical_m, at_s, other_at_s, piece, other_piece = nearest(
         one.pieces, one.tree, other.pieces, other.tree, rules.lateral_m, rules.vertical_m, below_s
     )
@@ -193,7 +193,7 @@ def _encounter(one: _Flown, other: _Flown, rules: SeparationRules, below_s: floa
     )
 
 
-def _hovers_in_its_way(hoverer: _Flown, passer: _Flown, rules: SeparationRules) -> bool:
+def _hovers_in_its_way(hoverer: _IndexedRoute, passer: _IndexedRoute, rules: SeparationRules) -> bool:
     """Whether the first stays for ever over a place that the second passes."""
     if hoverer.route.lands_s is not None or not len(hoverer.pieces):
         return False
@@ -207,7 +207,7 @@ def conflicts(routes: Sequence[TimedRoute], fixed: Sequence[TimedRoute] = (), *,
     return _conflicts([_flown(route, about_lon) for route in routes], [_flown(route, about_lon) for route in fixed], rules)
 
 
-def _conflicts(own: Sequence[_Flown], others: Sequence[_Flown], rules: SeparationRules) -> tuple[Encounter, ...]:
+def _conflicts(own: Sequence[_IndexedRoute], others: Sequence[_IndexedRoute], rules: SeparationRules) -> tuple[Encounter, ...]:
     pairs = [*combinations(own, 2), *((one, other) for one in own for other in others)]
     found = (_encounter(one, other, rules, rules.time_s) for one, other in pairs)
     return tuple(encounter for encounter in found if encounter is not None)
@@ -219,7 +219,7 @@ def closest_encounter(routes: Sequence[TimedRoute], fixed: Sequence[TimedRoute] 
     return _closest([_flown(route, about_lon) for route in routes], [_flown(route, about_lon) for route in fixed], rules)
 
 
-def _closest(own: Sequence[_Flown], others: Sequence[_Flown], rules: SeparationRules) -> Encounter | None:
+def _closest(own: Sequence[_IndexedRoute], others: Sequence[_IndexedRoute], rules: SeparationRules) -> Encounter | None:
     closest: Encounter | None = None
     for one, other in [*combinations(own, 2), *((one, other) for one in own for other in others)]:
         # a little above the best, for of two places with the same time between the nearer one counts
@@ -313,19 +313,19 @@ class _Search:
         self.routes, self.rules, self.raised = routes, rules, raised
         self.about_lon = _about_lon(routes)
         self.fixed = [_flown(route, self.about_lon) for route in fixed]
-        self._variants: dict[tuple[int, int], _Flown | None] = {
+        self._variants: dict[tuple[int, int], _IndexedRoute | None] = {
             (number, 0): _flown(route, self.about_lon) for number, route in enumerate(routes)
         }
         self._between: dict[tuple[int, int, int, int], FloatArray] = {}
         self._to_fixed: dict[tuple[int, int], FloatArray] = {}
 
-    def variant(self, route: int, layer: int) -> _Flown:
+    def variant(self, route: int, layer: int) -> _IndexedRoute:
         flown = self._variant(route, layer)
         if flown is None:
             raise LookupError(f"route {route} has no layer {layer}")
         return flown
 
-    def _variant(self, route: int, layer: int) -> _Flown | None:
+    def _variant(self, route: int, layer: int) -> _IndexedRoute | None:
         if (route, layer) not in self._variants:
             higher = None if self.raised is None else self.raised(route, layer * self.rules.vertical_m)
             self._variants[route, layer] = None if higher is None else _flown(higher, self.about_lon)
@@ -362,7 +362,7 @@ class _Search:
             self._to_fixed[route, layer] = np.concatenate(found) if found else ALWAYS_FREE
         return self._to_fixed[route, layer]
 
-    def _shared(self, one: _Flown, other: _Flown) -> FloatArray:
+    def _shared(self, one: _IndexedRoute, other: _IndexedRoute) -> FloatArray:
         rules = self.rules
         shared: FloatArray = shared_places(one.pieces, one.tree, other.pieces, other.tree, rules.lateral_m, rules.vertical_m, rules.time_s)
         return shared

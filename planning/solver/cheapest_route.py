@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, Problem
-from planning.solver.cost_matrices import NO_PATH_M, Classes, Kind, Quantities, classes_of, quantities_of
+from planning.solver.cost_matrices import NO_PATH_M, Classes, Quantities, QuantityKind, classes_of, quantities_of
 
 MAX_TRIED = 8
 
@@ -27,7 +27,7 @@ class LeastRoutes:
     which no route does: then one of the two goes round it, whichever makes the route the lesser.
     """
 
-    def __init__(self, problem: Problem, kind: Kind) -> None:
+    def __init__(self, problem: Problem, kind: QuantityKind) -> None:
         self._classes: Classes = classes_of(problem)
         self._found: Quantities = quantities_of(problem, self._classes, [kind])
         self._target = np.array([visit.target for visit in problem.visits], dtype=np.int64)

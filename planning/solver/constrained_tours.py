@@ -61,13 +61,13 @@ def limited_tours(arcs: Arcs, uav: int, counts: IntArray, most_labels: int = MAX
         back[at] = burden.onward[at, number].T
         home[at] = (least_paths(np.where(arcs.allowed[uav], burden.onward[at, number], np.inf)) + burden.end[at, uav]).min(axis=1)
     first, end = np.ascontiguousarray(burden.first[:, uav]), np.ascontiguousarray(burden.end[:, uav])
-    limits = Limits(float(arcs.limit_m[uav]), int(arcs.most[uav]), counts, first, back, end, burden.limit[:, uav].copy())
+    limits = TourLimits(float(arcs.limit_m[uav]), int(arcs.most[uav]), counts, first, back, end, burden.limit[:, uav].copy())
     found = _limited(own, limits, home, most_labels)
     length_m, reach_m, label_of, parent, visit, is_whole = found
     return Tours(length_m, is_whole, reach_m, own, label_of, parent, visit)
 
 
-class Limits(NamedTuple):
+class TourLimits(NamedTuple):
     """What is limited of one UAV's tours: the length, the targets done, counts (sets,), and r quantities more.
 
     Of these first (r, v), back (r, v, v) to the row's visit, end (r, v) and limit (r,).
@@ -83,7 +83,7 @@ class Limits(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def settled_tours(arcs: UavArcs, limits: Limits, reach_m: FloatArray, length_m: FloatArray, is_contested: BoolArray) -> bool:
+def settled_tours(arcs: UavArcs, limits: TourLimits, reach_m: FloatArray, length_m: FloatArray, is_contested: BoolArray) -> bool:
     """Fill in reach and lengths as `shortest_tours`, inf for the sets of which no tour keeps every limit. Whether any set is contested.
 
     Of a contested one the shortest tour breaks a limit that another of its tours keeps.
@@ -117,7 +117,7 @@ def settled_tours(arcs: UavArcs, limits: Limits, reach_m: FloatArray, length_m: 
 
 @njit(cache=True, nogil=True)
 def _limited(
-    arcs: UavArcs, limits: Limits, home: FloatArray, most_labels: int
+    arcs: UavArcs, limits: TourLimits, home: FloatArray, most_labels: int
 ) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray, bool]:
     """Lengths (sets,), reach as of `shortest_tours`, each set's label or -1, parents and visits of labels, whether all are there.
 
@@ -144,7 +144,7 @@ def _limited(
 @njit(cache=True, nogil=True)
 def _labels(
     arcs: UavArcs,
-    limits: Limits,
+    limits: TourLimits,
     home: FloatArray,
     is_wanted: BoolArray,
     is_contested: BoolArray,
@@ -214,7 +214,7 @@ def _longer_tours(
     members: int,
     visit: int,
     arcs: UavArcs,
-    limits: Limits,
+    limits: TourLimits,
     home: FloatArray,
     labels: tuple[FloatArray, IntArray, IntArray],
     tried: FloatArray,

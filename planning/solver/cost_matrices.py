@@ -14,7 +14,7 @@ NO_PATH_M = 1e11  # a hundred million kilometres stand for no way: sums of them 
 NO_LIMIT = NO_PATH_M / 2
 
 
-class Kind(Enum):
+class QuantityKind(Enum):
     METRES = auto()
     SECONDS = auto()
     WH = auto()
@@ -56,7 +56,7 @@ def classes_of(problem: Problem) -> Classes:
     return Classes(np.array(of_uav, dtype=np.int64), tuple(pilots))
 
 
-def quantities_of(problem: Problem, classes: Classes, wanted: Iterable[Kind]) -> Quantities:
+def quantities_of(problem: Problem, classes: Classes, wanted: Iterable[QuantityKind]) -> Quantities:
     """The wanted quantities in this order. What has no way in metres, seconds or Wh has none in any of those that the problem counts.
 
     Raises InvalidProblem where Wh are wanted and not known.
@@ -78,10 +78,10 @@ def quantities_of(problem: Problem, classes: Classes, wanted: Iterable[Kind]) ->
     return found
 
 
-def _counted_kinds(problem: Problem) -> list[Kind]:
-    kinds = [Kind.METRES]
-    kinds += [] if problem.wh is None else [Kind.WH]
-    return kinds + ([] if problem.seconds is None and problem.objective is not Objective.TIME else [Kind.SECONDS])
+def _counted_kinds(problem: Problem) -> list[QuantityKind]:
+    kinds = [QuantityKind.METRES]
+    kinds += [] if problem.wh is None else [QuantityKind.WH]
+    return kinds + ([] if problem.seconds is None and problem.objective is not Objective.TIME else [QuantityKind.SECONDS])
 
 
 def _write_metres(problem: Problem, classes: Classes, found: Quantities, at: int) -> None:
@@ -127,7 +127,7 @@ def _write_wh(problem: Problem, classes: Classes, found: Quantities, at: int) ->
         found.onward[at, [number for number in range(len(classes.pilots)) if number not in known]] = 0.0
 
 
-_WRITE = {Kind.METRES: _write_metres, Kind.SECONDS: _write_seconds, Kind.WH: _write_wh}
+_WRITE = {QuantityKind.METRES: _write_metres, QuantityKind.SECONDS: _write_seconds, QuantityKind.WH: _write_wh}
 
 
 def _rows(problem: Problem, classes: Classes) -> IntArray:

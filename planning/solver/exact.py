@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, Problem, Routes
-from planning.solver.constrained_tours import Limits, Tours, limited_tours, settled_tours
+from planning.solver.constrained_tours import TourLimits, Tours, limited_tours, settled_tours
 from planning.solver.plan_state import ABSENT
 from planning.solver.problem_arrays import Arcs
 from planning.solver.tours import UavArcs, walk_back
@@ -192,7 +192,7 @@ def _best(
         own_m, own_s = length_m[number, 0], duration_s[number, 0]
         arcs = UavArcs(first_m[uav], back_m[flying], end_m[uav], target, fleet.allowed[uav])
         first, end, limit = more.first[:, uav].copy(), more.end[:, uav].copy(), more.limit[:, uav].copy()
-        limits = Limits(fleet.limit_m[uav], fleet.most[uav], counts, first, back[flying], end, limit)
+        limits = TourLimits(fleet.limit_m[uav], fleet.most[uav], counts, first, back[flying], end, limit)
         if settled_tours(arcs, limits, reach_m[number], own_m, is_contested):
             return False, length, order
         for members in range(sets):

@@ -10,7 +10,7 @@ from numba import njit
 
 from planning.problem import IntArray
 from planning.solver.cost_matrices import NO_PATH_M
-from planning.solver.plan_state import NO, YES, Plan, RandomState, draw, draw_below
+from planning.solver.plan_state import NO, YES, PlanState, RandomState, draw, draw_below
 from planning.solver.problem_arrays import ProblemArrays
 
 NEIGHBOURS = 12
@@ -53,7 +53,7 @@ class Measured(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def draw_move(problem: ProblemArrays, plan: Plan, random: RandomState, longest: int) -> Move:
+def draw_move(problem: ProblemArrays, plan: PlanState, random: RandomState, longest: int) -> Move:
     """A move that joins two neighbouring targets. The first is of the route named, unless that is -1."""
     nothing = Move(NONE, 0, 0, 0, 0, 0, False)
     target = draw_below(random, len(plan.uav_of))
@@ -98,7 +98,7 @@ def _segment(random: RandomState, size: int, place: int) -> tuple[int, int]:
 
 
 @njit(cache=True, nogil=True)
-def added_m(problem: ProblemArrays, plan: Plan, move: Move) -> float:
+def added_m(problem: ProblemArrays, plan: PlanState, move: Move) -> float:
     """Metres by which a move lengthens both routes together, whether or not it may be made."""
     uav, other_uav, first, end = move.uav, move.other_uav, move.first, move.end
     if move.kind == TAILS:
@@ -135,7 +135,7 @@ def added_m(problem: ProblemArrays, plan: Plan, move: Move) -> float:
 
 
 @njit(cache=True, nogil=True)
-def measured(problem: ProblemArrays, plan: Plan, move: Move) -> Measured:
+def measured(problem: ProblemArrays, plan: PlanState, move: Move) -> Measured:
     uav, other_uav = move.uav, move.other_uav
     length_m, service_s, done = plan.length_m[uav], plan.service_s[uav], plan.done[uav]
     if move.kind == TAILS:
@@ -170,7 +170,7 @@ def measured(problem: ProblemArrays, plan: Plan, move: Move) -> Measured:
 
 
 @njit(cache=True, nogil=True)
-def _with_other_tails(problem: ProblemArrays, plan: Plan, move: Move) -> Measured:
+def _with_other_tails(problem: ProblemArrays, plan: PlanState, move: Move) -> Measured:
     uav, other_uav, cut, other_cut = move.uav, move.other_uav, move.slot, move.first
     size, other_size = plan.size[uav], plan.size[other_uav]
     _, tail_m, tail_s, tail, may = _carried(problem, plan, other_uav, uav, cut, size, NO)
@@ -201,7 +201,7 @@ def _with_other_tails(problem: ProblemArrays, plan: Plan, move: Move) -> Measure
 
 @njit(cache=True, nogil=True)
 def _carried(
-    problem: ProblemArrays, plan: Plan, to_uav: int, uav: int, first: int, end: int, is_turned: bool
+    problem: ProblemArrays, plan: PlanState, to_uav: int, uav: int, first: int, end: int, is_turned: bool
 ) -> tuple[float, float, float, int, bool]:
     """Metres inside a segment as it is and as the UAV that gets it would fly it, its service and targets, and whether that one may."""
     visit, gap_m, usable = plan.visit[uav], plan.gap_m[uav], problem.usable[to_uav]
@@ -226,7 +226,7 @@ def _carried(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _around(plan: Plan, uav: int, first: int, end: int) -> tuple[int, int]:
+def _around(plan: PlanState, uav: int, first: int, end: int) -> tuple[int, int]:
     """The visits before and behind a segment; -1 for the start and the end of the route."""
     before = plan.visit[uav, first - 1] if first > 0 else -1
     behind = plan.visit[uav, end] if end < plan.size[uav] else -1
@@ -241,7 +241,7 @@ def _joined_m(problem: ProblemArrays, uav: int, left: int, right: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def make(problem: ProblemArrays, plan: Plan, old: Plan, move: Move) -> None:
+def make(problem: ProblemArrays, plan: PlanState, old: PlanState, move: Move) -> None:
     """Change the routes of the two UAVs, of which `old` has copies. What follows from the visits is left to `settle`."""
     uav, other_uav, first, end = move.uav, move.other_uav, move.first, move.end
     if move.kind == TAILS:
@@ -259,7 +259,7 @@ def make(problem: ProblemArrays, plan: Plan, old: Plan, move: Move) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _exchange_tails(plan: Plan, old: Plan, uav: int, other_uav: int, cut: int, other_cut: int) -> None:
+def _exchange_tails(plan: PlanState, old: PlanState, uav: int, other_uav: int, cut: int, other_cut: int) -> None:
     size, other_size = old.size[uav], old.size[other_uav]
     tail, other_tail = size - cut, other_size - other_cut
     plan.visit[uav, cut : cut + other_tail] = old.visit[other_uav, other_cut:other_size]

@@ -10,7 +10,7 @@ from planning.solver.plan_state import (
     ABSENT,
     FIRST,
     NO_LIMIT_M,
-    Plan,
+    PlanState,
     RandomState,
     Workspace,
     done_on_other_sorties,
@@ -178,7 +178,7 @@ def _look_beside(problem: ProblemArrays, work: Workspace) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _is_of_no_use(problem: ProblemArrays, plan: Plan, uav: int, visit: int) -> bool:
+def _is_of_no_use(problem: ProblemArrays, plan: PlanState, uav: int, visit: int) -> bool:
     """Whether the UAV has done enough on all its sorties, or has an earlier one that is as empty."""
     if plan.size[uav] == 0 and uav > problem.first_of[uav] and plan.size[uav - 1] == 0:
         return True
@@ -187,7 +187,7 @@ def _is_of_no_use(problem: ProblemArrays, plan: Plan, uav: int, visit: int) -> b
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _fits(problem: ProblemArrays, plan: Plan, uav: int, visit: int, place: int) -> bool:
+def _fits(problem: ProblemArrays, plan: PlanState, uav: int, visit: int, place: int) -> bool:
     """Whether the route keeps what is limited beside what the objective counts; one that has no way somewhere may be mended."""
     count, number = plan.size[uav], problem.class_of[uav]
     for at in range(len(problem.more_limit)):
@@ -209,7 +209,7 @@ def _fits(problem: ProblemArrays, plan: Plan, uav: int, visit: int, place: int) 
 
 
 @njit(cache=True, nogil=True)
-def _put(problem: ProblemArrays, plan: Plan, uav: int, place: int, visit: int, added_m: float) -> None:
+def _put(problem: ProblemArrays, plan: PlanState, uav: int, place: int, visit: int, added_m: float) -> None:
     count, route, gap_m = plan.size[uav], plan.visit[uav], plan.gap_m[uav]
     gap_m[count + 1] = gap_m[count]
     for at in range(count, place, -1):

@@ -5,7 +5,7 @@ import math
 from numba import njit
 
 from planning.solver.exchanges import Measured, Move, added_m, measured
-from planning.solver.plan_state import Plan, RandomState, done_on_other_sorties, draw, duration_s, values
+from planning.solver.plan_state import PlanState, RandomState, done_on_other_sorties, draw, duration_s, values
 from planning.solver.problem_arrays import ProblemArrays
 
 HAIR_M = 1e-4  # by which a move stays within the limits: its metres are sums and differences
@@ -13,7 +13,7 @@ EVENNESS = 1e-3  # what the mean route weighs beside the longest
 
 
 @njit(cache=True, nogil=True)
-def is_better(problem: ProblemArrays, plan: Plan, best: Plan) -> bool:
+def is_better(problem: ProblemArrays, plan: PlanState, best: PlanState) -> bool:
     missed, total_m, longest_s = values(problem, plan)
     best_missed, best_total_m, best_longest_s = values(problem, best)
     if missed != best_missed:
@@ -24,7 +24,7 @@ def is_better(problem: ProblemArrays, plan: Plan, best: Plan) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def cost_of(problem: ProblemArrays, plan: Plan, power: int, scale: float) -> tuple[float, float]:
+def cost_of(problem: ProblemArrays, plan: PlanState, power: int, scale: float) -> tuple[float, float]:
     """What is left out by weight; the total [m], or a mean of the routes [s] that follows the longest the more the higher the power.
 
     The power is that of 2 that all durations are raised to.
@@ -37,7 +37,7 @@ def cost_of(problem: ProblemArrays, plan: Plan, power: int, scale: float) -> tup
 
 
 @njit(cache=True, nogil=True)
-def cost_of_routes(problem: ProblemArrays, plan: Plan, power: int, scale: float) -> float:
+def cost_of_routes(problem: ProblemArrays, plan: PlanState, power: int, scale: float) -> float:
     total = 0.0
     if not problem.is_makespan:
         for uav in range(len(plan.size)):
@@ -57,7 +57,7 @@ def cost_of_routes(problem: ProblemArrays, plan: Plan, power: int, scale: float)
 
 @njit(cache=True, nogil=True)
 def is_wanted(
-    problem: ProblemArrays, plan: Plan, move: Move, cost: float, temperature: float, power: int, scale: float, random: RandomState
+    problem: ProblemArrays, plan: PlanState, move: Move, cost: float, temperature: float, power: int, scale: float, random: RandomState
 ) -> bool:
     """Whether a move keeps the limits, and is accepted at this temperature."""
     uav, other_uav = move.uav, move.other_uav
@@ -93,7 +93,7 @@ def is_wanted(
 
 
 @njit(cache=True, nogil=True)
-def _do_too_many(problem: ProblemArrays, plan: Plan, move: Move, new: Measured) -> bool:
+def _do_too_many(problem: ProblemArrays, plan: PlanState, move: Move, new: Measured) -> bool:
     """Whether a UAV would do more targets than it may on all its sorties."""
     uav, other_uav = move.uav, move.other_uav
     if problem.first_of[uav] == problem.first_of[other_uav]:
@@ -116,7 +116,7 @@ def raised_to(share: float, power: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def longest_of(problem: ProblemArrays, plan: Plan) -> int:
+def longest_of(problem: ProblemArrays, plan: PlanState) -> int:
     """The UAV that flies longest; of its sorties the last."""
     longest, longest_s, own_s = 0, -1.0, 0.0
     for uav in range(len(plan.size)):

@@ -18,7 +18,7 @@ FIRST, ABSENT = cast(int, np.int64(0)), cast(int, np.int64(-1))
 NO_LIMIT_M = NO_PATH_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
 
 
-class Plan(NamedTuple):
+class PlanState(NamedTuple):
     """Routes and what follows from them; `size` (u,) is how many visits each has, `uav_of` (t,) is -1 for a target that is left out.
 
     gap_m (u, t + 1) holds the arc that leads to each place of a route, and at last on to its end. service_s (u,) begins with what
@@ -39,9 +39,9 @@ class Plan(NamedTuple):
 class Workspace(NamedTuple):
     """The current plan, the best one, and room to work in."""
 
-    plan: Plan
-    best: Plan
-    saved: Plan
+    plan: PlanState
+    best: PlanState
+    saved: PlanState
     is_saved: BoolArray  # (u,)
     is_removed: BoolArray  # (t,)
     waiting: IntArray  # (t,) targets to be put in
@@ -51,9 +51,9 @@ class Workspace(NamedTuple):
     opened_s: FloatArray
 
 
-def empty_plan(uavs: int, targets: int, limits: int = 0) -> Plan:
+def empty_plan(uavs: int, targets: int, limits: int = 0) -> PlanState:
     """Limits are those beside what the objective counts."""
-    return Plan(
+    return PlanState(
         np.zeros((uavs, targets), dtype=np.int64),
         np.zeros(uavs, dtype=np.int64),
         np.zeros((uavs, targets + 1)),
@@ -99,8 +99,8 @@ def raw_workspace(work: Workspace) -> Workspace:
 
 
 @njit(cache=True, nogil=True)
-def _raw_plan(plan: Plan) -> Plan:
-    return Plan(
+def _raw_plan(plan: PlanState) -> PlanState:
+    return PlanState(
         raw_view(plan.visit),
         raw_view(plan.size),
         raw_view(plan.gap_m),
@@ -113,12 +113,12 @@ def _raw_plan(plan: Plan) -> Plan:
     )
 
 
-def routes_of(plan: Plan) -> Routes:
+def routes_of(plan: PlanState) -> Routes:
     return tuple(tuple(route[:count]) for route, count in zip(plan.visit.tolist(), plan.size.tolist(), strict=True))
 
 
 @njit(cache=True, nogil=True)
-def settle(problem: ProblemArrays, plan: Plan, uav: int) -> None:
+def settle(problem: ProblemArrays, plan: PlanState, uav: int) -> None:
     """Work out everything that follows from a UAV's visits."""
     count = plan.size[uav]
     visit, gap_m = plan.visit[uav], plan.gap_m[uav]
@@ -147,7 +147,7 @@ def settle(problem: ProblemArrays, plan: Plan, uav: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def keeps_further_limits(problem: ProblemArrays, plan: Plan, uav: int) -> bool:
+def keeps_further_limits(problem: ProblemArrays, plan: PlanState, uav: int) -> bool:
     """Whether a settled route keeps what is limited beside what the objective counts."""
     keeps = True
     for at in range(len(problem.more_limit)):
@@ -156,7 +156,7 @@ def keeps_further_limits(problem: ProblemArrays, plan: Plan, uav: int) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def done_on_other_sorties(problem: ProblemArrays, plan: Plan, uav: int) -> int:
+def done_on_other_sorties(problem: ProblemArrays, plan: PlanState, uav: int) -> int:
     """Targets that the same UAV does on its other sorties."""
     done = -plan.done[uav]
     for other in range(problem.first_of[uav], problem.end_of[uav]):
@@ -171,7 +171,7 @@ def duration_s(length_m: float, speed_mps: float, service_s: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def copy_plan(source: Plan, copy: Plan) -> None:
+def copy_plan(source: PlanState, copy: PlanState) -> None:
     for uav in range(len(source.size)):
         copy_route(source, copy, uav)
     copy.uav_of[:] = source.uav_of
@@ -179,7 +179,7 @@ def copy_plan(source: Plan, copy: Plan) -> None:
 
 
 @njit(cache=True, nogil=True)
-def copy_route(source: Plan, copy: Plan, uav: int) -> None:
+def copy_route(source: PlanState, copy: PlanState, uav: int) -> None:
     count = source.size[uav]
     copy.size[uav] = count
     copy.visit[uav, :count] = source.visit[uav, :count]
@@ -199,7 +199,7 @@ def save(work: Workspace, uav: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def values(problem: ProblemArrays, plan: Plan) -> tuple[float, float, float]:
+def values(problem: ProblemArrays, plan: PlanState) -> tuple[float, float, float]:
     """What is left out by weight, the total [m], the longest route [s]."""
     missed, total_m, longest_s, own_s = 0.0, 0.0, 0.0, 0.0
     for target in range(len(plan.uav_of)):

@@ -9,7 +9,7 @@ from cffi import FFI
 from numba import carray, njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, InvalidProblem, Objective, Problem
-from planning.solver.cost_matrices import NO_LIMIT, NO_PATH_M, Kind, Quantities, classes_of, quantities_of
+from planning.solver.cost_matrices import NO_LIMIT, NO_PATH_M, Quantities, QuantityKind, classes_of, quantities_of
 
 MAX_NEIGHBOURS = 60
 MAX_JOINED = 12
@@ -97,7 +97,7 @@ class Arcs:
             service_s=np.zeros(len(visits)) if is_whole else np.array([visit.service_s for visit in visits], dtype=np.float64),
             done=np.array([visit.done for visit in visits], dtype=np.int64),
             limit_m=found.limit[0],
-            speed_mps=np.array([uav.speed_mps if counted is Kind.METRES else 1.0 for uav in uavs], dtype=np.float64),
+            speed_mps=np.array([uav.speed_mps if counted is QuantityKind.METRES else 1.0 for uav in uavs], dtype=np.float64),
             ready_s=nothing if is_whole else np.array([uav.ready_s for uav in uavs], dtype=np.float64),
             most=np.array([uav.most for uav in uavs], dtype=np.int64),
             allowed=np.ones(shape, dtype=np.bool_) if problem.allowed is None else np.ascontiguousarray(problem.allowed, dtype=np.bool_),
@@ -314,16 +314,16 @@ def _longest_between(apart_m: FloatArray) -> FloatArray:
     return longest_m
 
 
-def _kinds(problem: Problem) -> list[Kind]:
+def _kinds(problem: Problem) -> list[QuantityKind]:
     """What the objective counts, and behind it what else is limited."""
     objective = problem.objective
     if objective is Objective.TOTAL or (objective is Objective.MAKESPAN and problem.seconds is None):
-        counted = Kind.METRES
+        counted = QuantityKind.METRES
     else:
-        counted = Kind.WH if objective is Objective.ENERGY else Kind.SECONDS
+        counted = QuantityKind.WH if objective is Objective.ENERGY else QuantityKind.SECONDS
     has_limit = {
-        Kind.METRES: any(uav.limit_m < NO_LIMIT for uav in problem.uavs),
-        Kind.WH: any(uav.limit_wh < NO_LIMIT for uav in problem.uavs),
+        QuantityKind.METRES: any(uav.limit_m < NO_LIMIT for uav in problem.uavs),
+        QuantityKind.WH: any(uav.limit_wh < NO_LIMIT for uav in problem.uavs),
     }
     return [counted, *(kind for kind, is_limited in has_limit.items() if is_limited and kind is not counted)]
 

@@ -10,7 +10,7 @@ from numba import njit
 from operation.reasons import Reason
 from planning.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Routes, Unassigned, UnassignedReason
 from planning.solver.cheapest_route import LeastRoutes
-from planning.solver.cost_matrices import NO_PATH_M, Kind, classes_of, quantities_of
+from planning.solver.cost_matrices import NO_PATH_M, QuantityKind, classes_of, quantities_of
 
 
 class Cause(NamedTuple):
@@ -37,7 +37,7 @@ def needed_range_m(problem: Problem) -> FloatArray:
     if not visits or not uavs:
         return needed_m
     if problem.seconds is not None or problem.wh is not None:
-        return _needed(problem, Kind.METRES)
+        return _needed(problem, QuantityKind.METRES)
     along_m = np.array([visit.length_m for visit in problem.visits])
     first_m, end_m = problem.from_start_m + along_m, problem.end_m
     allowed = np.ones((uavs, visits), dtype=bool) if problem.allowed is None else problem.allowed
@@ -53,10 +53,10 @@ def needed_wh(problem: Problem) -> FloatArray | None:
     """The least Wh (u, v) with which a UAV can fly a visit, and on to where it ends; as `needed_range_m`. None if none is limited."""
     if problem.wh is None or not any(uav.limit_wh < math.inf for uav in problem.uavs):
         return None
-    return _needed(problem, Kind.WH)
+    return _needed(problem, QuantityKind.WH)
 
 
-def _needed(problem: Problem, kind: Kind) -> FloatArray:
+def _needed(problem: Problem, kind: QuantityKind) -> FloatArray:
     classes = classes_of(problem)
     found = quantities_of(problem, classes, [kind])
     first, end = found.first[0], found.end[0]
@@ -155,11 +155,11 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
 def least_needs(problem: Problem, needed_m: FloatArray, visits: Sequence[int]) -> tuple[FloatArray, FloatArray | None]:
     """Metres and Wh (u, v) that each UAV needs at least, exact for these visits; Wh are None if none are limited."""
     used_wh = needed_wh(problem)
-    exact_wh = None if used_wh is None else _on_one_route(problem, Kind.WH, used_wh, visits)
-    return _on_one_route(problem, Kind.METRES, needed_m, visits), exact_wh
+    exact_wh = None if used_wh is None else _on_one_route(problem, QuantityKind.WH, used_wh, visits)
+    return _on_one_route(problem, QuantityKind.METRES, needed_m, visits), exact_wh
 
 
-def _on_one_route(problem: Problem, kind: Kind, needed: FloatArray, visits: Sequence[int]) -> FloatArray:
+def _on_one_route(problem: Problem, kind: QuantityKind, needed: FloatArray, visits: Sequence[int]) -> FloatArray:
     """What these visits need where the ways there and back may lead over others, but not both over the same."""
     if not len(problem.uavs):
         return needed

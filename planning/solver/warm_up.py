@@ -11,7 +11,7 @@ from planning.connection_points import AccessRules, Terminal, paths_between
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.problem import End, Objective, Problem, Resources, UavStart, Visit
-from planning.reachability.reachability import Flight, FlownNetwork, reach
+from planning.reachability.reachability import FlownNetwork, PossibleFlight, reach
 from planning.solver import exact
 from planning.solver.solver import solve
 
@@ -29,7 +29,7 @@ def rehearse_ways() -> None:
     access = AccessRules(1_000.0, 1_000.0, on_asset_m=1.0, off_network_factor=2.0, zone_clearance_m=0.0)
     paths_between(graph, zones, [Terminal(BESIDE)], [Terminal(BESIDE)], [Terminal(BESIDE)], access)
     network = Network(**{field.name: getattr(graph, field.name) for field in fields(Network)})
-    flights = [Flight(BESIDE, End.RETURN, 1_000.0, lands=True, flying=FlightClass(Performance(battery_wh=50.0), 10.0))]
+    flights = [PossibleFlight(BESIDE, End.RETURN, 1_000.0, lands=True, flying=FlightClass(Performance(battery_wh=50.0), 10.0))]
     reach(FlownNetwork(network, graph, graph, zones, zones), flights, [], access)
 
 

@@ -21,7 +21,7 @@ HAIR_M = 1e-6  # less is rounding
 BoolArray = NDArray[np.bool_]
 
 
-class HeightBand(NamedTuple):
+class LegHeights(NamedTuple):
     """What each point of a route, and each leg at so many places, may be flown at.
 
     Leg i has the places first[i] up to but without first[i + 1], its ends among them: share of the leg, ground_m, low_m, high_m and the
@@ -83,7 +83,7 @@ def _band(
     heights_m: FloatArray,
     tolerance_m: float,
     max_agl_m: float,
-) -> HeightBand:
+) -> LegHeights:
     legs = len(agl_m) - 1
     parts = np.empty(len(share), dtype=np.int64)
     for piece in range(len(share)):
@@ -126,7 +126,7 @@ def _band(
     for point in range(legs - 1, -1, -1):
         if is_vertical[point] and agl_m[point] == agl_m[point + 1]:
             own_high_m[point] = min(own_high_m[point], own_high_m[point + 1])
-    return HeightBand(own_first, shares[:at].copy(), ground_m[:at].copy(), low_m[:at].copy(), high_m[:at].copy(),
+    return LegHeights(own_first, shares[:at].copy(), ground_m[:at].copy(), low_m[:at].copy(), high_m[:at].copy(),
                       level_m[:at].copy(), own_high_m, planned_m, is_vertical)  # fmt: skip
 
 
@@ -138,7 +138,7 @@ def _limits(floor_m: float, planned_m: float, highest_m: float, tolerance_m: flo
 
 
 @njit(cache=True, nogil=True)
-def _followed(band: HeightBand, agl_m: FloatArray) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
+def _followed(band: LegHeights, agl_m: FloatArray) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
     legs = len(band.first) - 1
     knot = np.empty(len(band.share), dtype=np.int64)  # places at which links end inside of legs
     knot_first = np.empty(legs + 1, dtype=np.int64)
@@ -194,7 +194,7 @@ def _clamped(value_m: float, low_m: float, high_m: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _linked(band: HeightBand, leg: int, own_window_m: FloatArray, knot: IntArray, window_m: FloatArray, count: int) -> int:
+def _linked(band: LegHeights, leg: int, own_window_m: FloatArray, knot: IntArray, window_m: FloatArray, count: int) -> int:
     """Put down the knots of a leg, each as far on as a straight link from the one before reaches, and the heights possible at each."""
     corner_m, other_m = np.empty((MAX_CORNERS, 2)), np.empty((MAX_CORNERS, 2))  # lines: height at the link's begin, and height per share
     begin, last = band.first[leg], band.first[leg + 1] - 1
@@ -253,7 +253,7 @@ def _cut(corner: FloatArray, corners: int, kept: FloatArray, along: float, limit
 
 
 @njit(cache=True, nogil=True)
-def _seen_back(band: HeightBand, place: int, level_m: float, begin: int, window_m: FloatArray) -> tuple[float, float]:
+def _seen_back(band: LegHeights, place: int, level_m: float, begin: int, window_m: FloatArray) -> tuple[float, float]:
     """The heights in the window at `begin` from which a straight link through the band ends at a place at this level."""
     least, most = -STEEPEST_M, STEEPEST_M
     for between in range(place - 1, begin, -1):
@@ -269,7 +269,7 @@ def _seen_back(band: HeightBand, place: int, level_m: float, begin: int, window_
 
 
 @njit(cache=True, nogil=True)
-def _between(band: HeightBand, before: int, before_m: float, after: int, after_m: float, knot: int, knot_m: float) -> tuple[int, float]:
+def _between(band: LegHeights, before: int, before_m: float, after: int, after_m: float, knot: int, knot_m: float) -> tuple[int, float]:
     """The place and height for a knot between two others, as near to their middle and as low as links to both allow; -1 if none is needed.
 
     The knot as it is where nothing better is found.

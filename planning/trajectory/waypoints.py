@@ -147,7 +147,7 @@ def _with_points_between(
     return positions, heights_m, kinds, assets, targets
 
 
-class Waypoint(NamedTuple):
+class WaypointRow(NamedTuple):
     """A route point and its height over the other two references; above sea level only where the ground's height is known."""
 
     point: RoutePoint
@@ -156,7 +156,7 @@ class Waypoint(NamedTuple):
 
 
 class Waypoints:
-    """Waypoints, column by column; taken one by one, each is a Waypoint. amsl_m is None where the ground is not known."""
+    """Waypoints, column by column; taken one by one, each is a WaypointRow. amsl_m is None where the ground is not known."""
 
     __slots__ = ("amsl_m", "points", "relative_m")
 
@@ -168,10 +168,10 @@ class Waypoints:
     def __len__(self) -> int:
         return len(self.points)
 
-    def __getitem__(self, place: int) -> Waypoint:
-        return Waypoint(self.points[place], None if self.amsl_m is None else float(self.amsl_m[place]), float(self.relative_m[place]))
+    def __getitem__(self, place: int) -> WaypointRow:
+        return WaypointRow(self.points[place], None if self.amsl_m is None else float(self.amsl_m[place]), float(self.relative_m[place]))
 
-    def __iter__(self) -> Iterator[Waypoint]:
+    def __iter__(self) -> Iterator[WaypointRow]:
         return map(self.__getitem__, range(len(self)))
 
     def part(self, begin: int, end: int) -> "Waypoints":

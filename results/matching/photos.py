@@ -59,7 +59,7 @@ class TargetPlace:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class TargetCandidate:
     key: int
     distance_m: float
     is_in_visit: bool | None  # taken while the target was visited; None: not known of one of the two
@@ -70,7 +70,7 @@ class Placing:
     """chosen: the target, or None where it is not clear. candidates: the best first."""
 
     chosen: int | None
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[TargetCandidate, ...]
 
 
 def place_photo(taken_s: float | None, targets: Sequence[TargetPlace]) -> Placing:
@@ -79,14 +79,14 @@ def place_photo(taken_s: float | None, targets: Sequence[TargetPlace]) -> Placin
     Targets that were visited at another time do not come into question. A target whose visit holds the photo wins over one whose visit is
     not known.
     """
-    candidates = [Candidate(target.key, _distance_m(target.outline), _is_in_visit(taken_s, target)) for target in targets]
+    candidates = [TargetCandidate(target.key, _distance_m(target.outline), _is_in_visit(taken_s, target)) for target in targets]
     possible = [one for one in candidates if one.distance_m <= MAX_TARGET_DISTANCE_M and one.is_in_visit is not False]
     possible.sort(key=lambda one: (one.is_in_visit is None, one.distance_m, one.key))
     best = tuple(possible[:MAX_CANDIDATES])
     return Placing(best[0].key if best and all(_is_clear(best[0], other) for other in possible[1:]) else None, best)
 
 
-def _is_clear(nearest: Candidate, other: Candidate) -> bool:
+def _is_clear(nearest: TargetCandidate, other: TargetCandidate) -> bool:
     is_only_visit = nearest.is_in_visit is True and other.is_in_visit is None
     ahead_m = other.distance_m - nearest.distance_m
     return ahead_m >= CLEAR_DISTANCE_M and (is_only_visit or other.distance_m >= CLEAR_RATIO * nearest.distance_m)

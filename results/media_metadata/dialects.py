@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
-from results.media_metadata.record import Attitude, Height, HeightReference, Position
+from results.media_metadata.record import Attitude, CameraHeightReference, Height, Position
 from results.media_metadata.xmp import Properties
 
 DJI = "dji.com/drone-dji/1.0"
@@ -55,10 +55,10 @@ def heights_of(xmp: Properties) -> tuple[Height, ...]:
         absolute, relative = _number(xmp, namespace, "AbsoluteAltitude"), _number(xmp, namespace, "RelativeAltitude")
         has_rtk = namespace == DJI and ((DJI, "RtkFlag") in xmp or xmp.get((DJI, "AltitudeType"), "").lower().startswith("rtk"))
         if absolute is not None:
-            reference = HeightReference.UNKNOWN if has_rtk else HeightReference.AMSL
+            reference = CameraHeightReference.UNKNOWN if has_rtk else CameraHeightReference.AMSL
             heights.append(Height(absolute, reference, f"{_label(namespace)}:AbsoluteAltitude"))
         if relative is not None:
-            heights.append(Height(relative, HeightReference.TAKE_OFF, f"{_label(namespace)}:RelativeAltitude"))
+            heights.append(Height(relative, CameraHeightReference.TAKE_OFF, f"{_label(namespace)}:RelativeAltitude"))
     return tuple(heights)
 
 

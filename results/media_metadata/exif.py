@@ -9,16 +9,16 @@ from PIL.ExifTags import GPS, IFD, Base
 from PIL.Image import Exif
 
 from results.media_metadata import dialects
-from results.media_metadata.record import Height, HeightReference, MediaRecord, Position, TimeSource
+from results.media_metadata.record import CameraHeightReference, Height, MediaRecord, Position, TimeSource
 from results.media_metadata.xmp import Properties
 
 MAX_TEXT_LENGTH = 100
 MAX_OFFSET = timedelta(hours=15)
 _ALTITUDE_REFERENCES = {  # EXIF 3.0, table "GPSAltitudeRef"
-    0: (1.0, HeightReference.AMSL),
-    1: (-1.0, HeightReference.AMSL),
-    2: (1.0, HeightReference.ELLIPSOID),
-    3: (-1.0, HeightReference.ELLIPSOID),
+    0: (1.0, CameraHeightReference.AMSL),
+    1: (-1.0, CameraHeightReference.AMSL),
+    2: (1.0, CameraHeightReference.ELLIPSOID),
+    3: (-1.0, CameraHeightReference.ELLIPSOID),
 }
 
 Tags = Mapping[int, Any]
@@ -103,12 +103,12 @@ def _altitude_of(gps: Tags, make: str, model: str) -> Height | None:
         return None
     stated = gps.get(GPS.GPSAltitudeRef, 0)
     sign, reference = _ALTITUDE_REFERENCES.get(
-        stated[0] if isinstance(stated, bytes) and stated else stated, (1.0, HeightReference.UNKNOWN)
+        stated[0] if isinstance(stated, bytes) and stated else stated, (1.0, CameraHeightReference.UNKNOWN)
     )
     if "parrot" in make.lower() and "anafiai" in model.lower().replace(" ", ""):
-        reference = HeightReference.ELLIPSOID
+        reference = CameraHeightReference.ELLIPSOID
     elif "autel" in make.lower() or make.lower().startswith("dji"):  # DJI writes its absolute height here, too
-        reference = HeightReference.UNKNOWN
+        reference = CameraHeightReference.UNKNOWN
     return Height(abs(value) * sign if value >= 0.0 else value, reference, "exif:GPSAltitude")
 
 

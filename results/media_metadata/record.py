@@ -6,7 +6,7 @@ from enum import StrEnum
 from typing import Any
 
 
-class HeightReference(StrEnum):
+class CameraHeightReference(StrEnum):
     """What a height is above."""
 
     AMSL = "amsl"
@@ -24,7 +24,7 @@ class TimeSource(StrEnum):
 @dataclass(frozen=True)
 class Height:
     value_m: float
-    reference: HeightReference
+    reference: CameraHeightReference
     source: str  # the tag
 
 
@@ -89,7 +89,7 @@ def record_from_json(values: dict[str, Any]) -> MediaRecord:
     found["position"] = None if found["position"] is None else Position(**found["position"])
     found["attitude"] = None if found["attitude"] is None else Attitude(**found["attitude"])
     found["heights"] = tuple(
-        Height(height["value_m"], HeightReference(height["reference"]), height["source"]) for height in found["heights"]
+        Height(height["value_m"], CameraHeightReference(height["reference"]), height["source"]) for height in found["heights"]
     )
     found["time_source"] = None if found["time_source"] is None else TimeSource(found["time_source"])
     found["faults"] = tuple(found["faults"])

@@ -1,6 +1,6 @@
 """Models of media and findings."""
 
-from results.models.findings import Evidence, Finding, FindingComment, Observation, Outcome, SeveritySource
+from results.models.findings import Evidence, Finding, FindingComment, Observation, ObservationOutcome, SeveritySource
 from results.models.media import MediaUpload, Medium, MediumKind, MediumState, Placement, Review, TakenAtSource
 
 __all__ = [
@@ -12,7 +12,7 @@ __all__ = [
     "MediumKind",
     "MediumState",
     "Observation",
-    "Outcome",
+    "ObservationOutcome",
     "Placement",
     "Review",
     "SeveritySource",

@@ -94,7 +94,7 @@ class Evidence(models.Model):
         return f"{self.finding_id} on {self.medium_id}"
 
 
-class Outcome(models.TextChoices):
+class ObservationOutcome(models.TextChoices):
     SEEN = "seen", "Seen again"
     NOT_SEEN = "not_seen", "Looked, and not seen"
 
@@ -104,14 +104,14 @@ class Observation(models.Model):
 
     finding = models.ForeignKey(Finding, on_delete=models.CASCADE, related_name="observations")
     medium = models.ForeignKey(Medium, on_delete=models.PROTECT, related_name="observations")
-    outcome = models.CharField(max_length=10, choices=Outcome.choices)
+    outcome = models.CharField(max_length=10, choices=ObservationOutcome.choices)
     observed_at = models.DateTimeField(help_text="when the medium was taken")
     author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
 
     class Meta:
         ordering = ["observed_at", "pk"]
-        constraints = [models.CheckConstraint(condition=Q(outcome__in=Outcome.values), name="observation_outcome_known")]
+        constraints = [models.CheckConstraint(condition=Q(outcome__in=ObservationOutcome.values), name="observation_outcome_known")]
 
     def __str__(self) -> str:
         return f"{self.outcome} of {self.finding_id}"

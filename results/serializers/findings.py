@@ -7,7 +7,7 @@ from rest_framework import serializers as answers
 from missions.serializers.uavs import PointSerializer
 from results.categories import BY_CODE, CATEGORIES, COMPONENTS
 from results.finding_states import FindingState
-from results.models import Evidence, Finding, FindingComment, Observation, Outcome, SeveritySource
+from results.models import Evidence, Finding, FindingComment, Observation, ObservationOutcome, SeveritySource
 from results.models.findings import MAX_MARKS, MAX_NOTE_LENGTH, MAX_REFERENCE_LENGTH
 from results.serializers.media import MAX_ID
 from workspace.api import strict_serializers as serializers
@@ -70,7 +70,7 @@ class FindingChangeSerializer(serializers.Serializer):
 
 class ObservationInputSerializer(serializers.Serializer):
     medium = serializers.UUIDField(help_text="a later photo of the asset")
-    outcome = serializers.ChoiceField(choices=Outcome.choices)
+    outcome = serializers.ChoiceField(choices=ObservationOutcome.choices)
 
 
 class CommentInputSerializer(serializers.Serializer):
@@ -119,7 +119,7 @@ class InspectionFindingPageSerializer(answers.Serializer):
 
 class ObservationSerializer(answers.Serializer):
     medium = answers.UUIDField()
-    outcome = answers.ChoiceField(choices=Outcome.choices)
+    outcome = answers.ChoiceField(choices=ObservationOutcome.choices)
     observed_at = answers.DateTimeField()
     author = answers.CharField(allow_null=True)
 

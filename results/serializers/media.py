@@ -7,7 +7,7 @@ from rest_framework import serializers as answers
 
 from missions.serializers.uavs import PointSerializer
 from operation.reasons import Reason
-from results.media_metadata.record import HeightReference
+from results.media_metadata.record import CameraHeightReference
 from results.models import MediaUpload, Medium, MediumKind, MediumState, Placement, Review, TakenAtSource
 from results.services.uploads import PART_BYTES
 from workspace.api import strict_serializers as serializers
@@ -21,7 +21,7 @@ MAX_ID = 999_999_999
 
 class HeightSerializer(answers.Serializer):
     value_m = answers.FloatField()
-    reference = answers.ChoiceField(choices=[reference.value for reference in HeightReference])
+    reference = answers.ChoiceField(choices=[reference.value for reference in CameraHeightReference])
     source = answers.CharField(help_text="the tag that states it")  # type: ignore[assignment]
 
 

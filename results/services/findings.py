@@ -15,7 +15,7 @@ from inspection.selectors import asset_label
 from missions.models import InspectionTarget, Mission
 from results.categories import BY_CODE, SCHEME
 from results.finding_states import FindingState, after_observation, may_set
-from results.models import Evidence, Finding, FindingComment, Medium, MediumState, Observation, Outcome, Review, SeveritySource
+from results.models import Evidence, Finding, FindingComment, Medium, MediumState, Observation, ObservationOutcome, Review, SeveritySource
 from results.models.findings import MAX_MARKS
 from results.services.media import review_medium
 from workspace.audit import record_change
@@ -153,10 +153,10 @@ def observe_finding(*, finding: Finding, actor: User, medium: Medium, outcome: s
             raise FindingRefused("medium", _("The photo is not of the finding's asset."))
         if at <= held.last_seen_at:
             raise FindingRefused("medium", _("The photo is not later than the last one that shows the finding."))
-        if outcome == Outcome.NOT_SEEN and held.state == FindingState.DONE and held.done_at is not None and at <= held.done_at:
+        if outcome == ObservationOutcome.NOT_SEEN and held.state == FindingState.DONE and held.done_at is not None and at <= held.done_at:
             raise FindingRefused("medium", _("The photo was taken before the work was done."))
         Observation.objects.create(finding=held, medium=medium, outcome=outcome, observed_at=at, author=actor)
-        is_seen = outcome == Outcome.SEEN
+        is_seen = outcome == ObservationOutcome.SEEN
         held.state = after_observation(FindingState(held.state), is_seen=is_seen).value
         if is_seen:
             held.last_seen_at = at

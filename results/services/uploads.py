@@ -30,27 +30,27 @@ KEPT = timedelta(days=7)  # since the last part of an unfinished upload
 SPACE_LOCK = 0x05A7_0034  # advisory lock, with the organisation: one upload at a time takes room
 
 
-class UploadRefused(ValueError):
+class MediaUploadRefused(ValueError):
     """Raised when bytes are not taken; the message has the reason and the remedy."""
 
 
-class WrongOffset(UploadRefused):
+class WrongOffset(MediaUploadRefused):
     """Raised when a part does not begin where the received bytes end; the upload states how many there are."""
 
 
-class TooLarge(UploadRefused):
+class TooLarge(MediaUploadRefused):
     pass
 
 
-class NoRoom(UploadRefused):
+class NoRoom(MediaUploadRefused):
     """Raised when the organisation's media take all of its room."""
 
 
-class UnsupportedType(UploadRefused):
+class UnsupportedType(MediaUploadRefused):
     pass
 
 
-class WrongHash(UploadRefused):
+class WrongHash(MediaUploadRefused):
     """Raised when all bytes are received and are not those that were announced. The upload begins again at its first byte."""
 
 
@@ -130,7 +130,7 @@ def receive_part(*, upload: MediaUpload, offset: int, content: bytes) -> MediaUp
                 % {"offset": offset, "received": held.received_bytes}
             )
         if offset + len(content) > held.size_bytes:
-            raise UploadRefused(
+            raise MediaUploadRefused(
                 _("The file was announced with %(size)s bytes; this part would end at %(end)s.")
                 % {"size": held.size_bytes, "end": offset + len(content)}
             )

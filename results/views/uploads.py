@@ -23,11 +23,11 @@ from results.selectors.media import open_uploads_of_organisation
 from results.serializers.media import MAX_BYTES, MediaUploadInputSerializer, MediaUploadSerializer, known_upload_json, upload_json
 from results.services.uploads import (
     PART_BYTES,
+    MediaUploadRefused,
     NoRoom,
     StoreFull,
     TooLarge,
     UnsupportedType,
-    UploadRefused,
     WrongHash,
     WrongOffset,
     adopt_subject,
@@ -199,7 +199,7 @@ def upload_problems(upload: MediaUpload | None = None) -> Iterator[None]:
         if upload is not None:
             delete_upload(upload=upload)
         raise ApiProblem(422, "unsupported_type", str(error)) from error
-    except UploadRefused as error:
+    except MediaUploadRefused as error:
         raise ApiProblem(400, "invalid", str(error)) from error
     except StoreFull as error:
         raise ApiProblem(507, "store_full", _("The disk of the media store is full. Tell the operator of this installation.")) from error

@@ -65,7 +65,7 @@ def energy_of(route: AssessedRoute) -> list[FlightEnergy]:
 
 
 @dataclass(frozen=True, eq=False)
-class Surroundings:
+class AssessmentSurroundings:
     """Surroundings to assess flights against. ground_amsl_m takes (n, 2) lon, lat and returns (n,) metres, NaN if unknown.
 
     departs_s: the mission's departure [Unix s]; None: any time.
@@ -123,7 +123,7 @@ class Assessment:
 
 
 def judge(
-    routes: Sequence[AssessedRoute], around: Surroundings, limits: AssessmentLimits, *, known: Sequence[AssessmentFinding] = ()
+    routes: Sequence[AssessedRoute], around: AssessmentSurroundings, limits: AssessmentLimits, *, known: Sequence[AssessmentFinding] = ()
 ) -> Assessment:
     """Return the assessment. known: findings from before the flight, such as a wind above the airframe's limit."""
     closest_approaches = closest_approaches_of(routes, step_s=APPROACH_STEP_S)
@@ -137,7 +137,7 @@ def judge(
 
 
 def _of_route(
-    route: AssessedRoute, around: Surroundings, limits: AssessmentLimits, met: Sequence[AssessmentFinding]
+    route: AssessedRoute, around: AssessmentSurroundings, limits: AssessmentLimits, met: Sequence[AssessmentFinding]
 ) -> tuple[list[AssessmentFinding], RouteAssessment]:
     visits, energy, following = visits_of(route, within_m=limits.waypoint_fail_m), energy_of(route), following_of(route)
     grounds = [np.zeros(0) if flown.track is None else around.ground_amsl_m(flown.track.position) for flown in route.flights]
@@ -282,7 +282,7 @@ def _of_times(route: AssessedRoute, visits: Sequence[AssessedVisit], limits: Ass
         yield AssessmentFinding(Level.WARNINGS, code, route.uav, facts=facts)
 
 
-def _nearest_zones(route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings) -> list[ZoneApproach]:
+def _nearest_zones(route: AssessedRoute, grounds: Sequence[FloatArray], around: AssessmentSurroundings) -> list[ZoneApproach]:
     """Return the closest approach of the route's flights to each zone, the nearest first."""
     found: dict[int, ZoneApproach] = {}
     for flown, ground_m in zip(route.flights, grounds, strict=True):
@@ -307,7 +307,7 @@ def _zone_finding(route: AssessedRoute, zone: ZoneApproach, limits: AssessmentLi
 
 
 def _nearest(
-    route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings, limits: AssessmentLimits
+    route: AssessedRoute, grounds: Sequence[FloatArray], around: AssessmentSurroundings, limits: AssessmentLimits
 ) -> tuple[list[Approach], StandingApproaches]:
     """Return the lowest heights, on the way and in flights through photos, and the closest approaches to obstacles."""
 

@@ -102,7 +102,7 @@ class GoTo:
         pass
 
 
-class Around:
+class AroundManoeuvre:
     """Flies to the nearest point of a circle, the given turns around its centre, and stops; see `around`."""
 
     mode = FlightMode.GO_TO

@@ -5,7 +5,7 @@ from simulation.flight.course import Via
 from simulation.flight.events import ItemReached, MissionEnded
 from simulation.flight.guidance import Gate
 from simulation.flight.manoeuvre_context import ManoeuvreContext
-from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOffManoeuvre
+from simulation.flight.manoeuvres import AroundManoeuvre, Land, Manoeuvre, Return, TakeOffManoeuvre
 from simulation.flight.states import FlightMode
 
 MIN_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed closer
@@ -76,7 +76,7 @@ class MissionManoeuvre:
             self._begin_run(context)
             return True
         if isinstance(order, flown.FlyAround):
-            return self._starts(context, Around(context.vector_of(order.place), order.turns, order.radius_m))
+            return self._starts(context, AroundManoeuvre(context.vector_of(order.place), order.turns, order.radius_m))
         if isinstance(order, flown.TakeOffOrder):
             height_m = context.settings.take_off_height_m if order.place.height_m is None else context.vector_of(order.place)[2]
             return self._starts(context, TakeOffManoeuvre(max(height_m, 1.0)))

@@ -6,7 +6,8 @@ from django.utils.translation import gettext as _
 
 from inspection.models import Asset
 from inspection.selectors.asset_names import asset_label
-from missions.models import Mission, Waypoint, WaypointKind
+from missions.models import Mission, Waypoint
+from planning.trajectory.waypoints import WaypointKind
 
 WaypointPlaces = Mapping[tuple[int, int], str]  # by the UAV's place in the mission and the waypoint's in its route
 

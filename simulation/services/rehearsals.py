@@ -37,8 +37,7 @@ from simulation.rehearsing.scenario_weather import weather_of
 from simulation.rehearsing.weather_scenario import Named, WeatherScenario, named_scenario, scenario_from_json, scenario_to_json
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
 from simulation.services.fleet import StandIn, stand_in_to_json
-from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
-from simulation.services.surroundings import ground_of_plan, surroundings_of
+from simulation.services.plan_to_fly import PlanToFly, ground_of_plan, plan_to_fly, surroundings_of
 from simulation.vehicle_protocol.fence import rally_points_of
 from workspace.audit import record_change
 from workspace.jobs.services import cancel_job, create_job_within, finish_job

@@ -8,7 +8,7 @@ from typing import Any
 from uuid import UUID
 
 from simulation.models import SimulatedVehicle, Simulation
-from simulation.vehicle_endpoint.fleet import Fleet, VehicleChange
+from simulation.vehicle_endpoint.fleet import SimulatedFleet, VehicleChange
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.launch import Launch, fleet_of
 
@@ -27,7 +27,7 @@ class RunningSimulation:
 
     simulation: Simulation
     vehicles: tuple[SimulatedVehicle, ...]
-    fleet: Fleet
+    fleet: SimulatedFleet
     speed: float
     held_until_s: float
     _thread: threading.Thread = field(init=False, repr=False)

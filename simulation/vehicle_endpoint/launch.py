@@ -11,7 +11,7 @@ from simulation.flight.camera import SIMULATED_CAMERA
 from simulation.flight.faults import Faults, Weather
 from simulation.flight.plant import FlatGround, GroundElevation
 from simulation.flight.uav import SimulatedUav
-from simulation.vehicle_endpoint.fleet import Fleet
+from simulation.vehicle_endpoint.fleet import SimulatedFleet
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.radio import Address, Radio
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
@@ -41,7 +41,7 @@ class Launch:
     listens_at: Address | None = None
 
 
-def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
+def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> SimulatedFleet:
     """Return the fleet. Raises OSError if a socket cannot be opened, and closes all of them."""
     uavs: list[FlyingUav] = []
     try:
@@ -63,7 +63,7 @@ def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
         for flying in uavs:
             flying.radio.close()
         raise
-    return Fleet(uavs, speed)
+    return SimulatedFleet(uavs, speed)
 
 
 def _airframe(launch: Launch) -> Airframe:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from mavlink.frames import Frame, Message
-from mavlink.signing import EPOCH_UNIX_S, UNITS_PER_S, FrameWriter, Refusal, SignatureCheck
+from mavlink.signing import EPOCH_UNIX_S, UNITS_PER_S, FrameRefusal, FrameWriter, SignatureCheck
 from simulation.vehicle_protocol.streams import AUTOPILOT
 
 
@@ -27,7 +27,7 @@ class SignedLink:
             return True
         check = self._checks.setdefault(frame.system, SignatureCheck(self.key))
         refusal = check.refusal(frame, unix_s + self.clock_offset_s)
-        if refusal is Refusal.FROM_THE_FUTURE and frame.timestamp is not None:  # only returned for valid signatures
+        if refusal is FrameRefusal.FROM_THE_FUTURE and frame.timestamp is not None:  # only returned for valid signatures
             self.clock_offset_s = EPOCH_UNIX_S + frame.timestamp / UNITS_PER_S - unix_s
             refusal = check.refusal(frame, unix_s + self.clock_offset_s)
         return refusal is None

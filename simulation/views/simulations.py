@@ -20,6 +20,7 @@ from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems, refusals
 from planning.energy.conditions import Conditions, conditions_from_json
 from simulation.models import SimulatedAutopilotType, SimulatedVehicle, Simulation
+from simulation.selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
 from simulation.serializers import simulations as shapes
 from simulation.services.simulated_copies import fly_simulated_copy
 from simulation.services.simulated_flights import start_simulated_flights
@@ -33,7 +34,6 @@ from simulation.services.simulations import (
     end_vehicle,
     start_pool,
 )
-from simulation.simulation_selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
 from simulation.vehicle_models import PRESENT
 from simulation.views.rehearsals import scenario_of
 from workspace.api.errors import ApiProblem

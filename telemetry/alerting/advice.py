@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-from telemetry.alerting.finding import LAND, RETURN
+from telemetry.alerting.detection import LAND, RETURN
 from telemetry.alerting.modes import LEADS_TO, ModeKind
 from telemetry.alerting.surroundings import IssuedOrder
 

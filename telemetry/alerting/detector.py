@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from telemetry.alerting.detection import Detection
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import AlertLimits
 
 POLL_INTERVAL_S = 1.0
@@ -18,14 +18,14 @@ def _none(_limits: AlertLimits, _interval_s: float) -> float:
 class Detector:
     """Finds the causes of one code.
 
-    `detect` returns the present findings; None if it cannot decide, which leaves open alerts unchanged. A cause must last `raise_after_s`
+    `detect` returns the present detections; None if it cannot decide, which leaves open alerts unchanged. A cause must last `raise_after_s`
     to open an alert and be gone for `clear_after_s` to close it. `reports` is the maximum number of reports needed to detect it. With
     `needs_flight`, nothing is found for a UAV that is not in flight. While an alert with a code in `suppressed_by` is open, this detector
-    is skipped, as its finding would be a consequence. `own_delay_s` is the delay that its limits add, at an interval of reports [s].
+    is skipped, as its detection would be a consequence. `own_delay_s` is the delay that its limits add, at an interval of reports [s].
     """
 
     code: str
-    detect: Callable[[DetectorInput], Iterable[Finding] | None]
+    detect: Callable[[DetectorInput], Iterable[Detection] | None]
     raise_after_s: float
     clear_after_s: float
     reports: int = 1

@@ -1,13 +1,13 @@
-"""Alert state machine: converts findings to changes of alerts, with delays to open and close and one alert per cause."""
+"""Alert state machine: converts detections to changes of alerts, with delays to open and close and one alert per cause."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from telemetry.alerting.detection import RANK, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput, Key
 from telemetry.alerting.detector_state import AlertCause
 from telemetry.alerting.detectors import down
-from telemetry.alerting.finding import RANK, Finding
 
 CLEARED, LANDED = "cleared", "landed"  # reasons why an alert is closed
 
@@ -16,7 +16,7 @@ CLEARED, LANDED = "cleared", "landed"  # reasons why an alert is closed
 class Opened:
     """An alert to open, or an open one with a higher level or newer values. `is_held`: it keeps a level from when its cause was worse."""
 
-    finding: Finding
+    detection: Detection
     is_held: bool = False
 
 
@@ -45,27 +45,27 @@ def changes(inputs: DetectorInput, detectors: Sequence[Detector]) -> list[Change
         is_over = detector.needs_flight and not inputs.is_in_flight
         if is_over and is_down_away:
             continue
-        findings = () if is_over else detector.detect(inputs)
-        if findings is None:
+        detections = () if is_over else detector.detect(inputs)
+        if detections is None:
             continue
-        of_detector = _changes_of(detector, inputs, findings, LANDED if is_over else CLEARED)
-        open_codes |= {change.finding.code for change in of_detector if isinstance(change, Opened)}
+        of_detector = _changes_of(detector, inputs, detections, LANDED if is_over else CLEARED)
+        open_codes |= {change.detection.code for change in of_detector if isinstance(change, Opened)}
         found += of_detector
     return found
 
 
-def _changes_of(detector: Detector, inputs: DetectorInput, findings: Iterable[Finding], over: str) -> list[Change]:
+def _changes_of(detector: Detector, inputs: DetectorInput, detections: Iterable[Detection], over: str) -> list[Change]:
     """over: the reason to close alerts whose cause is gone."""
     causes, now_s = inputs.detector_state.causes, inputs.now_s
-    by_key: dict[Key, Finding] = {(finding.code, finding.subject): finding for finding in findings}
+    by_key: dict[Key, Detection] = {(detection.code, detection.subject): detection for detection in detections}
     found: list[Change] = []
-    for key, finding in by_key.items():
-        level = _lasting_level(causes.setdefault(key, AlertCause()), finding.level, now_s, detector.raise_after_s)
+    for key, detection in by_key.items():
+        level = _lasting_level(causes.setdefault(key, AlertCause()), detection.level, now_s, detector.raise_after_s)
         is_open = inputs.open_levels.get(key)
         if is_open is not None or level is not None:
             highest = max((entry for entry in (is_open, level) if entry is not None), key=RANK.__getitem__)
-            is_held = RANK[finding.level] < RANK[highest]
-            found.append(Opened(finding if finding.level == highest else replace(finding, level=highest), is_held))
+            is_held = RANK[detection.level] < RANK[highest]
+            found.append(Opened(detection if detection.level == highest else replace(detection, level=highest), is_held))
     for key in {*causes, *inputs.open_levels}:
         if key[0] != detector.code or key in by_key:
             continue

@@ -60,7 +60,7 @@ class Ahead:
 
 
 @dataclass(frozen=True, slots=True)
-class Observation:
+class ProfileObservation:
     """Data of a report in the profile's frame. None: not reported."""
 
     east_m: float | None
@@ -75,7 +75,7 @@ def at_start() -> AlongTrack:
     return AlongTrack(np.zeros(PLACES))
 
 
-def anywhere(profile: FlightProfile, observation: Observation) -> AlongTrack | None:
+def anywhere(profile: FlightProfile, observation: ProfileObservation) -> AlongTrack | None:
     """Return the places for the first report of a flight; None if it is far from the profile."""
     start = at_start()
     return _found_anew(profile, start, clock_of(profile, start), 0.0, observation, within_s=math.inf)
@@ -101,7 +101,7 @@ def ahead(profile: FlightProfile, along_track: AlongTrack, after_s: float, *, is
 
 
 def updated(
-    profile: FlightProfile, along_track: AlongTrack, after_s: float, observation: Observation, *, is_surely_under_way: bool = True
+    profile: FlightProfile, along_track: AlongTrack, after_s: float, observation: ProfileObservation, *, is_surely_under_way: bool = True
 ) -> AlongTrack | None:
     """Return the places after a report and an improved speed factor; None if the report is far from the profile.
 
@@ -159,7 +159,7 @@ def velocity(profile: FlightProfile, clock: FloatArray, reading_s: FloatArray) -
     return east, north, up
 
 
-def _likelihood(profile: FlightProfile, clock: FloatArray, grid_s: FloatArray, observation: Observation) -> FloatArray:
+def _likelihood(profile: FlightProfile, clock: FloatArray, grid_s: FloatArray, observation: ProfileObservation) -> FloatArray:
     found = np.ones_like(grid_s)
     if observation.east_m is not None and observation.north_m is not None:
         off_east, off_north = (
@@ -186,7 +186,7 @@ def _found_anew(
     along_track: AlongTrack,
     clock: FloatArray,
     expected_s: float,
-    observation: Observation,
+    observation: ProfileObservation,
     *,
     within_s: float = 120.0,
 ) -> AlongTrack | None:
@@ -223,7 +223,7 @@ def _learnt(
     middle_s: FloatArray,
     places_s: FloatArray,
     after_s: float,
-    observation: Observation,
+    observation: ProfileObservation,
 ) -> AlongTrack:
     """Update the speed factor, only from time in motion and from reports with a position."""
     nominal_s = np.interp(places_s, clock, profile.nominal_s)
@@ -242,7 +242,7 @@ def _learnt(
     return AlongTrack(nominal_s, better, variance, _now(profile, clock, places_s, observation))
 
 
-def _now(profile: FlightProfile, clock: FloatArray, places_s: FloatArray, observation: Observation) -> float:
+def _now(profile: FlightProfile, clock: FloatArray, places_s: FloatArray, observation: ProfileObservation) -> float:
     """Return the relative difference of the reported speed from the profile's; 0 near corners and stops."""
     if observation.east_mps is None or observation.north_mps is None:
         return 0.0

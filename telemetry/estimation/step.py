@@ -8,7 +8,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.decoding.measurement import Measurement
-from telemetry.estimation.along_track_filter import PLACES, AlongTrack, Observation, anywhere, at_start, updated
+from telemetry.estimation.along_track_filter import PLACES, AlongTrack, ProfileObservation, anywhere, at_start, updated
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import SHARED_HEIGHT_M, SHARED_M, State, Track, after
 from telemetry.estimation.phases import Phase, phase_of
@@ -96,12 +96,12 @@ def _velocity(reported: Measurement) -> tuple[float, float, float] | None:
     return reported.velocity_east_mps, reported.velocity_north_mps, -(reported.velocity_down_mps or 0.0)
 
 
-def _observation(phase: Phase, reported: Measurement, place: tuple[float, float] | None) -> Observation:
+def _observation(phase: Phase, reported: Measurement, place: tuple[float, float] | None) -> ProfileObservation:
     """Return the observation, with velocity only in phases that follow the route."""
     velocity = _velocity(reported) if phase in {Phase.MISSION, Phase.TAKE_OFF} else None
     east_m, north_m = place or (None, None)
     east_mps, north_mps, up_mps = velocity or (None, None, None)
-    return Observation(east_m, north_m, east_mps, north_mps, up_mps, reported.waypoint_sequence)
+    return ProfileObservation(east_m, north_m, east_mps, north_mps, up_mps, reported.waypoint_sequence)
 
 
 def _velocity_from(
@@ -137,7 +137,7 @@ def _fused_height(state_estimate: StateEstimate, reported_m: float | None) -> tu
     return state_estimate.height_m + gain * (reported_m - state_estimate.height_m), gain * BARO_VARIANCE_M2
 
 
-def _route(course: Course, state: State, phase: Phase, after_s: float, observation: Observation) -> Track | None:
+def _route(course: Course, state: State, phase: Phase, after_s: float, observation: ProfileObservation) -> Track | None:
     """Return the position along the approved route, kept while the UAV leaves it for a time."""
     if course.profile is None:
         return None

@@ -51,7 +51,7 @@ from telemetry.gateway.preparation import (
 )
 from telemetry.gateway.protocol_driver import OTHER_LIST_READ, ProtocolDriver, ask_for_the_present, read_back
 from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
-from telemetry.services.alerts.mission_alerts import raise_mission_mismatch, raise_other_list
+from telemetry.services.alerts.command_alerts import raise_mission_mismatch, raise_other_list
 from telemetry.services.links.onboard_lists import Carried, LoadedLists, begin_loading, confirm_loaded, end_loading, fail_loading
 
 RETRIES = 2  # a vehicle may not answer for a parameter that it does not have

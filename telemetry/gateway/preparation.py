@@ -13,8 +13,7 @@ from inspection.geodesy.wgs84 import WGS84
 from mavlink.approved_route import TakeOff
 from mavlink.autopilot_type import RESTARTS, AutopilotType, Mode
 from mavlink.commands.actions import ITEM, SPEED_MPS, Order
-from mavlink.commands.leg import BesideLeg, beside_leg, beside_place
-from mavlink.intermediate_waypoints import FLOWN
+from mavlink.legs import FLOWN, BesideLeg, beside_leg, beside_place
 from mavlink.mission_sync.supported_items import PHOTO_RADIUS_M
 from mavlink.vehicle_plan import FlightLoad
 from mavlink.vehicle_state import VehicleState

@@ -11,7 +11,7 @@ from django.conf import settings
 
 from mavlink.addressing import Addressing
 from mavlink.autopilot_type import RESTARTS, AutopilotType
-from mavlink.commands.home_request import HomeReading
+from mavlink.commands.message_requests import HomeReading
 from mavlink.frames import Message
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.download import Download

@@ -12,7 +12,7 @@ from inspection.geodesy import LonLat
 from mavlink.autopilot_type import COMMANDED, autopilot_type_of
 from mavlink.decoding.report import E7, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
-from mavlink.signing import FrameWriter, Refusal, SignatureCheck, stream_of, timestamp_at, unix_s_of
+from mavlink.signing import FrameRefusal, FrameWriter, SignatureCheck, stream_of, timestamp_at, unix_s_of
 from mavlink.vehicle_class import type_name
 from telemetry.gateway.addresses import Addresses
 from telemetry.gateway.fleet import KnownUav
@@ -125,7 +125,7 @@ class SenderAuthentication:
         """Return whether a frame that waits for a lease is worth keeping."""
         if self._checks and frame.is_signed:
             fresh = (SignatureCheck(check.key) for check in self._checks.values())
-            return any(check.refusal(frame, now_s) in (None, Refusal.TOO_OLD) for check in fresh)
+            return any(check.refusal(frame, now_s) in (None, FrameRefusal.TOO_OLD) for check in fresh)
         return self.uav.allows_unsigned
 
     def key_of(self, frame: Frame) -> bytes | None:
@@ -170,7 +170,7 @@ class SenderAuthentication:
         if self._checks and frame.timestamp is not None:
             return self._signed_refusal(frame, frame.timestamp, peer, now_s)
         if not self.uav.allows_unsigned or self._has_shown_its_key:
-            return Refusal.NO_KEY if frame.is_signed else Refusal.UNSIGNED
+            return FrameRefusal.NO_KEY if frame.is_signed else FrameRefusal.UNSIGNED
         if self.peer is None or peer == self.peer or not is_within(self.last_message_s, now_s, SENDER_SILENT_S):
             self.addresses.believe(peer)
             return None
@@ -178,10 +178,10 @@ class SenderAuthentication:
         return SECOND_SENDER
 
     def _signed_refusal(self, frame: Frame, timestamp: int, peer: Peer, now_s: float) -> str | None:
-        credential_id, refusal = next(self._by_key(frame, now_s), (None, Refusal.WRONG_SIGNATURE))
+        credential_id, refusal = next(self._by_key(frame, now_s), (None, FrameRefusal.WRONG_SIGNATURE))
         if credential_id is None:
             return refusal
-        if refusal is Refusal.REPLAYED and self.addresses.copy(stream_of(frame), timestamp, peer, now_s):
+        if refusal is FrameRefusal.REPLAYED and self.addresses.copy(stream_of(frame), timestamp, peer, now_s):
             self.second_sender = self.addresses.copied
             return COPIED
         if refusal is None:
@@ -190,11 +190,11 @@ class SenderAuthentication:
             self.addresses.take(stream_of(frame), timestamp, peer, now_s)
         return refusal
 
-    def _by_key(self, frame: Frame, now_s: float) -> Iterator[tuple[int, Refusal | None]]:
+    def _by_key(self, frame: Frame, now_s: float) -> Iterator[tuple[int, FrameRefusal | None]]:
         """Yield the key that signed the frame, and why it is refused nevertheless."""
         for credential_id, check in self._checks.items():
             refusal = check.refusal(frame, now_s)
-            if refusal is not Refusal.WRONG_SIGNATURE:
+            if refusal is not FrameRefusal.WRONG_SIGNATURE:
                 yield credential_id, refusal
 
 

@@ -13,16 +13,16 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, AutopilotType
+from mavlink.commands.message_requests import MissingPhotos
 from mavlink.decoding.boots import Stamp, VehicleTime
 from mavlink.decoding.cameras import CameraReader
 from mavlink.decoding.captures import CaptureDecoder
 from mavlink.decoding.measurement import LinkQuality
-from mavlink.decoding.missing_photos import MissingPhotos
 from mavlink.decoding.report import FlownState, MeasurementDecoder, StatusText, TextCollector, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
 from mavlink.mission_sync.flown_items import FlightWatch, FlownMissionItem
 from mavlink.mission_sync.limits import PARAMETERS
-from mavlink.signing import FrameWriter, Refusal
+from mavlink.signing import FrameRefusal, FrameWriter
 from mavlink.vehicle_state import VehicleState
 from missions.models import LinkKind
 from telemetry.gateway import heartbeat
@@ -44,7 +44,7 @@ logger = logging.getLogger(__name__)
 MAX_WAITING = 5_000  # frames of a vehicle that waits for a lease
 RECEIVED_WITHIN_S = 5.0  # otherwise non-urgent commands wait for it, or for another gateway
 HEARTBEAT_AGAIN_S = 1.0
-LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
+LATE = frozenset({FrameRefusal.TOO_OLD, FrameRefusal.BEFORE_START})
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 SEND_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})

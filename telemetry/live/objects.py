@@ -9,9 +9,10 @@ import orjson
 from django.db.models import Count
 from django.utils import translation
 
-from missions.models import InspectionTarget, Mission, MissionUav, ReplanOffer, TargetState, UavCommand, Waypoint, WaypointKind
+from missions.models import InspectionTarget, Mission, MissionUav, ReplanOffer, TargetState, UavCommand, Waypoint
 from missions.serializers.commands import command_json
 from missions.serializers.replan_offers import offer_outcome, render_difference, revision_of_offer
+from planning.trajectory.waypoints import WaypointKind
 from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
 from telemetry.selectors.live import Key

@@ -88,7 +88,7 @@ class FlightFacts:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class TargetOutcome:
     result: Result
     reason: OutcomeReason | None = None
 
@@ -99,28 +99,32 @@ def cause_in(texts: Iterable[tuple[float, str]], at_s: float) -> str:
     return next((cause for cause, pattern in _CAUSES.items() if any(pattern.search(text) for text in about)), "")
 
 
-def outcome_of(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident], *, is_over: bool) -> Outcome:
+def outcome_of(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident], *, is_over: bool) -> TargetOutcome:
     """Return the outcome of a target. flight: None without a route. incidents: of the whole mission, sorted by time."""
     if target.state == "complete":
         return _complete(target, flight)
     reason = _why(target, flight, incidents)
     if target.state in ("pending", "in-progress") and not is_over:
-        return Outcome(Result.OPEN, reason)
-    return Outcome(Result.NOT_INSPECTED, reason or OutcomeReason("ended"))
+        return TargetOutcome(Result.OPEN, reason)
+    return TargetOutcome(Result.NOT_INSPECTED, reason or OutcomeReason("ended"))
 
 
-def _complete(target: TargetFacts, flight: FlightFacts | None) -> Outcome:
+def _complete(target: TargetFacts, flight: FlightFacts | None) -> TargetOutcome:
     """Return the outcome of a complete target. Without records, the stored data of the visit counts."""
     visit = flight.visit if flight is not None and flight.has_reports else None
     if target.reported is not None and target.reported[0] == "complete":
-        return Outcome(Result.INSPECTED)
+        return TargetOutcome(Result.INSPECTED)
     if visit is None:
-        return Outcome(Result.INSPECTED) if target.reached_s is not None else Outcome(Result.NOT_CONFIRMED, OutcomeReason("no-report"))
+        return (
+            TargetOutcome(Result.INSPECTED)
+            if target.reached_s is not None
+            else TargetOutcome(Result.NOT_CONFIRMED, OutcomeReason("no-report"))
+        )
     if visit.is_confirmed:
-        return Outcome(Result.INSPECTED)
+        return TargetOutcome(Result.INSPECTED)
     if visit.closest_m is None:
-        return Outcome(Result.NOT_CONFIRMED, OutcomeReason("no-report"))
-    return Outcome(Result.NOT_CONFIRMED, OutcomeReason("nearest-report", {"metres": round(visit.closest_m)}))
+        return TargetOutcome(Result.NOT_CONFIRMED, OutcomeReason("no-report"))
+    return TargetOutcome(Result.NOT_CONFIRMED, OutcomeReason("nearest-report", {"metres": round(visit.closest_m)}))
 
 
 def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident]) -> OutcomeReason | None:

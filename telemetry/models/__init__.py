@@ -1,11 +1,16 @@
 """Models of links, records, estimates, flights and alerts."""
 
-from telemetry.models.alerts import Alert, AlertLevel, AlertNote
-from telemetry.models.captures import Capture, CaptureReport
-from telemetry.models.flights import FlightEvent, FlightEventKind
 from telemetry.models.links import FlightLog, UavLink, UnknownVehicle, UnknownVehicleState, VehicleText
-from telemetry.models.records import InspectionResult, TelemetryRecord, TelemetryStream
-from telemetry.models.watching import PositionEstimate, UavWatch
+from telemetry.models.records import (
+    Capture,
+    CaptureReport,
+    FlightEvent,
+    FlightEventKind,
+    InspectionResult,
+    TelemetryRecord,
+    TelemetryStream,
+)
+from telemetry.models.watching import Alert, AlertLevel, AlertNote, PositionEstimate, UavWatch
 
 __all__ = [
     "Alert",

@@ -14,7 +14,7 @@ from mavlink.approved_route import FrozenRoute, route_from_json
 from missions.models import ENDED_STATES, Approval, InspectionTarget, LinkKind, Mission, OfferState, TargetState, Uav
 from telemetry.mission_report.fix import Fix, airborne, in_order, uav_after_s, uav_span_s
 from telemetry.mission_report.flown_route import ReportedRoute, flown_route
-from telemetry.mission_report.outcomes import FlightFacts, Incident, Outcome, OutcomeReason, Result, TargetFacts, outcome_of
+from telemetry.mission_report.outcomes import FlightFacts, Incident, OutcomeReason, Result, TargetFacts, TargetOutcome, outcome_of
 from telemetry.mission_report.visits import ReportedVisit, visits_of
 from telemetry.models import Alert, AlertLevel, InspectionResult, TelemetryRecord
 from telemetry.selectors.captures import photos_by_uav
@@ -53,7 +53,7 @@ class TargetOnRecord:
     row: InspectionTarget
     route: RouteOnRecord | None
     visit: ReportedVisit | None
-    outcome: Outcome
+    outcome: TargetOutcome
     planned_after_s: float | None
     reached_after_s: float | None
 

@@ -6,7 +6,7 @@ from django.utils.translation import gettext as _
 
 from missions.serializers.known_fields import KnownFieldsSerializer
 from telemetry.alerting.advice import ADVICE, OWN_ACT
-from telemetry.alerting.finding import ACTS, KINDS, LAND, RETURN, acts_of
+from telemetry.alerting.detection import ACTS, KINDS, LAND, RETURN, acts_of
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alert_words import alert_words
 from telemetry.selectors.alerts import WORST

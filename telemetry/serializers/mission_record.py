@@ -3,7 +3,7 @@
 from rest_framework import serializers
 
 from missions.fields import ColoursField
-from missions.models import MissionState, TargetState, WaypointKind
+from missions.models import WAYPOINT_KINDS, MissionState, TargetState
 from telemetry.mission_report.outcomes import IncidentKind, Result
 from workspace.api.external_data import AttributesField
 from workspace.jobs.serializers import Declared
@@ -140,7 +140,7 @@ class PlannedRouteSerializer(serializers.Serializer):
 
 class RecordWaypointSerializer(serializers.Serializer):
     sequence = serializers.IntegerField()
-    kind = serializers.ChoiceField(choices=WaypointKind.choices)
+    kind = serializers.ChoiceField(choices=WAYPOINT_KINDS)
     position = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="longitude, latitude [deg]")
     altitude_relative_m = serializers.FloatField(help_text="above the route's first take-off")
     arrival_s = serializers.FloatField(allow_null=True, help_text="after the mission's departure")

@@ -36,7 +36,7 @@ class NewCapture:
     link: str  # LinkKind
     stream: str
     received_at: datetime
-    report: decoded.CaptureReport
+    report: decoded.CaptureMessage
     mission_item: int | None = None
     waypoint_sequence: int | None = None
     mission_id: UUID | None = None
@@ -145,13 +145,13 @@ def _begun(new: NewCapture, flies_mission: UUID | None, loaded: LoadedList | Non
 
 
 def _combine(capture: Capture) -> None:
-    reports = [decoded.CaptureReport.from_json(values) for values in capture.reports.values_list("values", flat=True)]
+    reports = [decoded.CaptureMessage.from_json(values) for values in capture.reports.values_list("values", flat=True)]
     for name, value in _columns(reports).items():
         setattr(capture, name, value)
     capture.save()
 
 
-def _columns(reports: Iterable[decoded.CaptureReport]) -> dict[str, Any]:
+def _columns(reports: Iterable[decoded.CaptureMessage]) -> dict[str, Any]:
     whole = decoded.combined(list(reports))
     has_place = whole.longitude_deg is not None and whole.latitude_deg is not None
     as_they_are = (

@@ -14,7 +14,7 @@ from inspection.selectors import ground_heights_m
 from mavlink.decoding.measurement import Measurement, believable
 from missions.models import MissionState
 from missions.selectors.commands import SENT_LAST
-from missions.services.fleet.reports import ReportedPosition, note_reported_positions
+from missions.services.fleet.uavs import ReportedPosition, note_reported_positions
 from telemetry.services.flight_events import note_take_offs_and_landings
 from telemetry.services.latest import note_latest
 from telemetry.services.waypoints import LoadedList, lists_on

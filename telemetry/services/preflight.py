@@ -35,7 +35,7 @@ from operation.reasons import Reason
 from planning.views.camera import Camera
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import down_off_plan
-from telemetry.services.alerts.approved_flights import approved_content
+from telemetry.services.approved_flights import approved_content
 from workspace.models import Organisation
 from workspace.reason_texts import column_text, reason_text
 

@@ -12,7 +12,8 @@ from rest_framework.views import APIView
 
 from inspection.models import AssetReference
 from inspection.selectors import references_of
-from missions.models import InspectionTarget, TargetState, Waypoint, WaypointKind
+from missions.models import InspectionTarget, TargetState, Waypoint
+from planning.trajectory.waypoints import WaypointKind
 from telemetry.models import InspectionResult
 from telemetry.serializers.results import ResultPageSerializer, result_json
 from telemetry.views.log_filters import mission_of, time_of

@@ -29,8 +29,7 @@ from telemetry.serializers.uav_link import (
     StoredResultsSerializer,
     read_result,
 )
-from telemetry.services.links.companion_captures import take_captures
-from telemetry.services.links.companion_reports import USED_AGAIN, take_reports
+from telemetry.services.links.companion_reports import USED_AGAIN, take_captures, take_reports
 from telemetry.services.links.http_messages import note_received_over_http
 from telemetry.services.links.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
 from telemetry.services.results import EndedFlight, take_results

@@ -16,8 +16,7 @@ from rest_framework.views import APIView
 from accounts.invitations import public_address
 from missions.views.uavs import uav_or_404
 from telemetry.models import FlightLog
-from telemetry.selectors.gateway_addresses import gateway_addresses
-from telemetry.selectors.vehicles import LogFileMissing, connection_of, file_of, flight_logs_of, texts_of
+from telemetry.selectors.vehicles import LogFileMissing, connection_of, file_of, flight_logs_of, gateway_addresses, texts_of
 from telemetry.serializers.log import FlightLogPageSerializer, VehicleTextPageSerializer, VehicleTextSerializer
 from telemetry.serializers.vehicles import UavConnectionSerializer, connection_json
 from workspace.api.paging import page_of

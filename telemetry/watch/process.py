@@ -19,7 +19,7 @@ from mavlink.decoding.measurement import Measurement
 from operation import loop_heartbeats
 from operation.metrics import ESTIMATED_UAVS, ESTIMATOR_ERROR_M, ESTIMATOR_INNOVATIONS, ESTIMATOR_ROUND_SECONDS
 from telemetry.alerting.detector_input import WatchedUav
-from telemetry.estimation.innovation import innovation
+from telemetry.estimation.estimate import innovation
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
 from telemetry.selectors.watched import (
@@ -32,7 +32,7 @@ from telemetry.selectors.watched import (
     watched_flights,
 )
 from telemetry.services.alerts.alerting import poll_alerts
-from telemetry.services.knowledge import knowledge_of
+from telemetry.services.approved_flights import knowledge_of
 from telemetry.services.targets_checked import LOOKBACK_S, TargetChecks
 from telemetry.services.watches import (
     Made,

@@ -12,7 +12,8 @@ from django.utils import timezone
 
 import config.urls  # noqa: F401 - the models are registered when the addresses are read
 from accounts.users import OperatorsAlone, change_users, delete_user
-from missions.models import Approval, InspectionTarget, MissionUav, Route, UavType, Waypoint, WaypointKind
+from missions.models import Approval, InspectionTarget, MissionUav, Route, UavType, Waypoint
+from planning.trajectory.waypoints import WaypointKind
 from telemetry.models import UnknownVehicle
 from tests.accounts.test_invitations import FORM
 from tests.accounts.users import a_user, client_of

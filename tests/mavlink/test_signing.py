@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.frames import Frame, frames_of_datagram
-from mavlink.signing import MAX_STREAMS, FrameWriter, Refusal, SignatureCheck, timestamp_at
+from mavlink.signing import MAX_STREAMS, FrameRefusal, FrameWriter, SignatureCheck, timestamp_at
 
 KEY, OTHER_KEY = b"k" * 32, b"o" * 32
 NOW_S = 1_800_000_000.0
@@ -44,12 +44,12 @@ def test_the_epoch_is_2015():
     ("received", "refusal"),
     [
         (frame(), None),
-        (frame(key=None), Refusal.UNSIGNED),
-        (frame(key=OTHER_KEY), Refusal.WRONG_SIGNATURE),
+        (frame(key=None), FrameRefusal.UNSIGNED),
+        (frame(key=OTHER_KEY), FrameRefusal.WRONG_SIGNATURE),
         (frame(now_s=NOW_S - 60), None),
-        (frame(now_s=NOW_S - 61), Refusal.TOO_OLD),
+        (frame(now_s=NOW_S - 61), FrameRefusal.TOO_OLD),
         (frame(now_s=NOW_S + 60), None),
-        (frame(now_s=NOW_S + 61), Refusal.FROM_THE_FUTURE),
+        (frame(now_s=NOW_S + 61), FrameRefusal.FROM_THE_FUTURE),
     ],
 )
 def test_what_is_refused_and_why(received, refusal):
@@ -61,22 +61,22 @@ def test_what_is_refused_and_why(received, refusal):
 def test_a_frame_counts_once():
     check, received = SignatureCheck(KEY), frame()
     assert check.refusal(received, NOW_S) is None
-    assert check.refusal(received, NOW_S) == Refusal.REPLAYED
-    assert SignatureCheck(KEY, dict(check.last)).refusal(received, NOW_S) == Refusal.REPLAYED, "nor after a restart"
+    assert check.refusal(received, NOW_S) == FrameRefusal.REPLAYED
+    assert SignatureCheck(KEY, dict(check.last)).refusal(received, NOW_S) == FrameRefusal.REPLAYED, "nor after a restart"
 
 
 def test_time_goes_forward_by_component_and_link():
     check = SignatureCheck(KEY)
     assert check.refusal(frame(), NOW_S) is None
-    assert check.refusal(frame(now_s=NOW_S - 1), NOW_S) == Refusal.REPLAYED
+    assert check.refusal(frame(now_s=NOW_S - 1), NOW_S) == FrameRefusal.REPLAYED
     assert check.refusal(frame(now_s=NOW_S - 1, link_id=1), NOW_S) is None
     assert check.refusal(frame(now_s=NOW_S - 1, component=2), NOW_S) is None
 
 
 def test_who_has_no_key_moves_no_clock():
     check = SignatureCheck(KEY)
-    assert check.refusal(frame(key=OTHER_KEY, now_s=NOW_S + 50), NOW_S) == Refusal.WRONG_SIGNATURE
-    assert check.refusal(frame(now_s=NOW_S + 1_000), NOW_S) == Refusal.FROM_THE_FUTURE
+    assert check.refusal(frame(key=OTHER_KEY, now_s=NOW_S + 50), NOW_S) == FrameRefusal.WRONG_SIGNATURE
+    assert check.refusal(frame(now_s=NOW_S + 1_000), NOW_S) == FrameRefusal.FROM_THE_FUTURE
     assert check.refusal(frame(), NOW_S) is None
 
 
@@ -101,7 +101,7 @@ def test_our_times_go_forward_whatever_the_clock_does():
 def test_streams_are_bounded():
     check = SignatureCheck(KEY)
     refusals = [check.refusal(frame(link_id=n % 256, component=n // 256), NOW_S) for n in range(MAX_STREAMS + 1)]
-    assert refusals == [None] * MAX_STREAMS + [Refusal.TOO_MANY_STREAMS]
+    assert refusals == [None] * MAX_STREAMS + [FrameRefusal.TOO_MANY_STREAMS]
 
 
 def test_a_key_shows_in_no_words():

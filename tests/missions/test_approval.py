@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
 from mavlink.approved_route import route_from_json
-from mavlink.intermediate_waypoints import with_points_between
+from mavlink.legs import with_points_between
 from mavlink.mission_items import flight_loads
 from mavlink.mission_sync.limits import leg_warnings
 from mavlink.vehicle_plan import load_from_json

@@ -16,7 +16,7 @@ from missions.models import MissionUav
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
-from workspace.api import waiting
+from workspace.jobs import views as waiting
 from workspace.jobs.services import cancel_job
 from workspace.models import Job, JobState, Role
 

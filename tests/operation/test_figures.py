@@ -16,8 +16,7 @@ from config.instrumentation.system_metrics import InstallationState
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.models import GraphSnapshot, Ground
-from telemetry.estimation.estimate import Ellipse, Estimate
-from telemetry.estimation.innovation import innovation
+from telemetry.estimation.estimate import Ellipse, Estimate, innovation
 from telemetry.gateway import figures as gateway_figures
 from workspace.models import DEFAULT_ORGANISATION_ID, Job
 

@@ -21,7 +21,7 @@ from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.problem import End
-from planning.reachability.reachability import Flight, FlownNetwork, reach
+from planning.reachability.reachability import FlownNetwork, PossibleFlight, reach
 from planning.reachability.reachable_assets import Reachability
 from planning.rules import FlightRules
 
@@ -78,7 +78,7 @@ def reachabilities(found):
 
 
 def flight(lon, lat=0.0, end=End.OPEN, limit_m=np.inf):
-    return Flight(LonLat(lon, lat), end, limit_m)
+    return PossibleFlight(LonLat(lon, lat), end, limit_m)
 
 
 def test_within_range_there_and_beyond_it_with_the_metres_missing():
@@ -165,7 +165,9 @@ def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
     zones = zone_index(*boxes)
     ends = [End.OPEN, End.RETURN, End.ANY_BASE]
     places = [LonLat(*place) for place in generator.uniform(-0.08, 0.08, (3, 2)).tolist()]
-    flights = [Flight(place, ends[int(generator.integers(3))], float(generator.choice([4_000.0, 9_000.0, np.inf]))) for place in places[:2]]
+    flights = [
+        PossibleFlight(place, ends[int(generator.integers(3))], float(generator.choice([4_000.0, 9_000.0, np.inf]))) for place in places[:2]
+    ]
     graph = masked(ground, zones, LINKING, HEIGHTS).graph
 
     found = judged(ground, flights, zones=zones, bases=places[2:])
@@ -224,7 +226,7 @@ def test_the_battery_is_counted_as_an_assignment_counts_it(seed):
     end, lands = [(End.OPEN, False), (End.OPEN, True), (End.RETURN, True), (End.ANY_BASE, True)][int(generator.integers(4))]
     flying = IRIS if generator.random() < 0.5 else HEAVY
     conditions = Conditions((WindLayer(60.0, float(generator.uniform(0.0, 12.0)), float(generator.uniform(0.0, 359.0))),))
-    one = Flight(places[0], end, np.inf, lands, flying)
+    one = PossibleFlight(places[0], end, np.inf, lands, flying)
 
     found = judged(ground, [one], bases=places[1:], conditions=conditions)
 

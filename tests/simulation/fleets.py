@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from inspection.geodesy import LonLat
-from simulation.vehicle_endpoint.fleet import Fleet
+from simulation.vehicle_endpoint.fleet import SimulatedFleet
 from simulation.vehicle_endpoint.launch import Launch, fleet_of
 
 AT = LonLat(10.4, 55.4)
@@ -22,7 +22,7 @@ def free_port() -> int:
 
 
 @contextmanager
-def flying(launches: Sequence[Launch], *, speed: float) -> Iterator[Fleet]:
+def flying(launches: Sequence[Launch], *, speed: float) -> Iterator[SimulatedFleet]:
     fleet = fleet_of(launches, speed=speed)
     thread = threading.Thread(target=fleet.run, name="fleet")
     thread.start()

@@ -19,7 +19,7 @@ from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from planning.task import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from simulation.assessment.flown import AssessedRoute, FlownFlight, FlownTrack, TrackEnding
-from simulation.assessment.judging import Surroundings
+from simulation.assessment.judging import AssessmentSurroundings
 from simulation.assessment.limits import AssessmentLimits
 from simulation.assessment.obstacles import Standing
 
@@ -125,6 +125,6 @@ def standing(*spans: tuple[tuple[float, float], tuple[float, float], float]) -> 
     return Standing(start, end, tops, tops)
 
 
-def around(**more: Any) -> Surroundings:
-    nothing = Surroundings(zones(), standing(), lambda positions: np.full(len(positions), GROUND_M), None)
+def around(**more: Any) -> AssessmentSurroundings:
+    nothing = AssessmentSurroundings(zones(), standing(), lambda positions: np.full(len(positions), GROUND_M), None)
     return replace(nothing, **more)

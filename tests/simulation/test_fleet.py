@@ -18,9 +18,8 @@ from inspection.geodesy import LonLat
 from mavlink.frames import frames_of_datagram, message_of
 from mavlink.signing import FrameWriter, SignatureCheck
 from simulation.flight.faults import Faults
-from simulation.vehicle_endpoint.fleet import InvalidSpeed, VehicleChange
+from simulation.vehicle_endpoint.fleet import InvalidSpeed, VehicleChange, WrongOrder, change_of
 from simulation.vehicle_endpoint.launch import Launch, fleet_of, in_a_row
-from simulation.vehicle_endpoint.orders import WrongOrder, change_of
 from simulation.vehicle_endpoint.radio import InvalidStationAddress, Radio, address_of
 from tests.simulation.fleets import AT, flying, free_port, wait_for
 

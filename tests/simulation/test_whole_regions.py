@@ -17,9 +17,8 @@ from planning.problem import Objective
 from planning.request import EndAction
 from simulation.assessment.judging import judge
 from simulation.rehearsing.flying import fly
-from simulation.services.plan_to_fly import plan_to_fly
+from simulation.services.plan_to_fly import plan_to_fly, surroundings_of
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
-from simulation.services.surroundings import surroundings_of
 from tests.missions.flights import an_operator
 from tests.missions.oracles.terrain_oracle import Hills
 from tests.missions.property_tests.random_flights import cut_out

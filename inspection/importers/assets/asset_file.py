@@ -18,7 +18,7 @@ from inspection.importers.assets.geopackage import geopackage_source
 from inspection.importers.assets.kml import kml_source
 from inspection.importers.assets.reference_systems import ROUGH_M, ToWgs84, name_of_system, system_of_code
 from inspection.importers.assets.shapefiles import shapefile_source
-from inspection.importers.rows import MAX_FAULTS, MAX_ROWS, Cell, FaultyRows, RawRow, Source, refused
+from inspection.importers.rows import MAX_FAULTS, MAX_ROWS, Cell, FaultyRows, RawRow, RowSource, refused
 
 MAX_VERTICES = 2_000_000
 MAX_PARTS = 5_000  # lines of one row
@@ -59,7 +59,7 @@ class RowFaults:
 class AssetFile:
     """An open file whose rows can be read repeatedly, each time from the start."""
 
-    def __init__(self, source: Source, crs_name: str, to_wgs84: ToWgs84 | None) -> None:
+    def __init__(self, source: RowSource, crs_name: str, to_wgs84: ToWgs84 | None) -> None:
         self.source = source
         self.crs_name = crs_name
         self._to_wgs84 = to_wgs84
@@ -158,12 +158,12 @@ def _source(path: Path, geometry_columns: Any, layer: str, *, has_system: bool) 
 
 
 @contextmanager
-def _plain(make: Callable[[], Source]) -> Iterator[Source]:
+def _plain(make: Callable[[], RowSource]) -> Iterator[RowSource]:
     yield make()
 
 
 @contextmanager
-def _zipped(path: Path, layer: str, *, has_system: bool) -> Iterator[Source]:
+def _zipped(path: Path, layer: str, *, has_system: bool) -> Iterator[RowSource]:
     with opened_archive(path) as archive:
         if any(name.lower().endswith(".shp") for name in archive.names):
             with shapefile_source(archive, layer, has_system=has_system) as source:
@@ -192,7 +192,7 @@ def _kml_of(archive: Archive) -> str | None:
     return next((name for name in names if name.lower() == "doc.kml"), names[0] if names else None)
 
 
-def _refuse_if_no_degrees(source: Source) -> None:
+def _refuse_if_no_degrees(source: RowSource) -> None:
     """Refuse coordinates that are not degrees, judged by the first position, instead of reporting a fault for each row."""
     row = next(source.rows(), None)
     if row is None or not isinstance(row.geometry, dict) or row.geometry["type"] != "Point":

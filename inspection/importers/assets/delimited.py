@@ -17,7 +17,7 @@ from inspection.importers.rows import (
     MAX_TEXT,
     Columns,
     RawRow,
-    Source,
+    RowSource,
     plain_cell,
     refused,
     unique_names,
@@ -36,14 +36,14 @@ _WKT_NAMES = ("wkt", "geom", "geometry", "the_geom", "geometrie", "shape", "wkt_
 csv.field_size_limit(max(csv.field_size_limit(), MAX_ROW_CHARACTERS))  # process-wide: a polygon as WKT exceeds the default
 
 
-def delimited_source(path: Path, geometry_columns: Any) -> Source:
+def delimited_source(path: Path, geometry_columns: Any) -> RowSource:
     """Open a table. geometry_columns is {"lon", "lat"} or {"wkt"} with column names; missing ones are guessed. Raises AssetFileError."""
     encoding = _encoding(path)
     delimiter = _delimiter(path, encoding)
     columns, first = _columns(path, encoding, delimiter)
     chosen = _geometry_columns(geometry_columns, columns, first)
     notes = [f"{encoding.upper()}, columns parted by {'tab' if delimiter == chr(9) else delimiter}"]
-    source = Source("csv", lambda: _rows(path, encoding, delimiter, columns, chosen), notes=notes, geometry_columns=chosen)
+    source = RowSource("csv", lambda: _rows(path, encoding, delimiter, columns, chosen), notes=notes, geometry_columns=chosen)
     source.columns, source.first_cells = columns, dict(zip(columns, first, strict=False))
     return source
 

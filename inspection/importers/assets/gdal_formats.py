@@ -1,19 +1,30 @@
 """GML, FlatGeobuf, DXF and File Geodatabases, which GDAL reads in a process with limits."""
 
 import base64
+import math
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO, Any
+from xml.parsers import expat
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.archive import Archive
-from inspection.importers.assets.gml import check_numbers
 from inspection.importers.assets.reference_systems import system_of_wkt
 from inspection.importers.assets.wkb import geometry_of_wkb
 from inspection.importers.gdal_process import GdalRefusal, gdal_process
-from inspection.importers.rows import MAX_ROWS, AssetFileError, Columns, RawRow, Source, plain_cell, refused, unique_names
+from inspection.importers.rows import (
+    MAX_ROW_CHARACTERS,
+    MAX_ROWS,
+    AssetFileError,
+    Columns,
+    RawRow,
+    RowSource,
+    plain_cell,
+    refused,
+    unique_names,
+)
 from inspection.importers.xml_root import leads_elsewhere, root_of
 from operation.reasons import Reason
 
@@ -42,11 +53,11 @@ def format_of_start(start: bytes) -> str:
 
 
 @contextmanager
-def gdal_file_source(path: Path, file_format: str, layer: str, *, has_system: bool) -> Iterator[Source]:
+def gdal_file_source(path: Path, file_format: str, layer: str, *, has_system: bool) -> Iterator[RowSource]:
     """Open a layer of a file. has_system: the user names the reference system. Raises AssetFileError."""
     with path.open("rb") as file:
         if file_format == "gml":
-            check_numbers(file)
+            _check_numbers(file)
         yield _source(file_format, {f"file.{file_format}": file}, layer, has_system=has_system)
 
 
@@ -55,7 +66,7 @@ def has_geodatabase(archive: Archive) -> bool:
 
 
 @contextmanager
-def geodatabase_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[Source]:
+def geodatabase_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[RowSource]:
     """Open a layer of a zipped File Geodatabase. Raises AssetFileError."""
     folders = {PurePosixPath(name).parent for name in archive.names if PurePosixPath(name).name.lower() == _TABLE_OF_TABLES}
     if len(folders) > 1:
@@ -73,7 +84,7 @@ def geodatabase_source(archive: Archive, layer: str, *, has_system: bool) -> Ite
         yield _source("filegdb", files, layer, has_system=has_system)
 
 
-def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has_system: bool) -> Source:
+def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has_system: bool) -> RowSource:
     try:
         with gdal_process(_DRIVERS[file_format], files, layer=layer, most=0) as process:
             head = process.line()
@@ -86,7 +97,7 @@ def _source(file_format: str, files: Mapping[str, IO[bytes]], layer: str, *, has
     if head["wkt"] is None and not has_system:
         raise refused(name[:60], "the layer does not say in which reference system it is: name it, such as EPSG:2056")
     system = None if has_system else system_of_wkt(head["wkt"], name[:60])
-    return Source(
+    return RowSource(
         file_format, lambda: _rows(_DRIVERS[file_format], files, name, columns), crs=system, layer=name, layers=tuple(head["layers"]),
         columns=columns,
     )  # fmt: skip
@@ -121,3 +132,75 @@ def _geometry(value: str | bool | None, place: str) -> dict[str, Any] | Geometry
 def _refused(place: str, refusal: GdalRefusal) -> AssetFileError:
     reason = refusal.reason
     return refused(place, reason if isinstance(reason, Reason) else f"GDAL does not read it: {reason}")
+
+
+_CHUNK = 64 * 1024
+_MAX_TOKEN_BYTES = 1024 * 1024  # of one tag or comment
+_DEEPEST = 64
+_NUMBERS = {"pos", "posList", "coordinates", "X", "Y", "Z"}
+_SEPARATORS = str.maketrans(",", " ")
+
+
+def _check_numbers(file: IO[bytes]) -> None:
+    """Check that the file is XML, not deeply nested, and that its coordinates are numbers. Raises AssetFileError with the line.
+
+    GDAL would take "nan" or "x" for 0.
+    """
+    checker = _GmlChecker()
+    fed = 0
+    file.seek(0)
+    while chunk := file.read(_CHUNK):
+        checker.feed(chunk)
+        fed += len(chunk)
+        if fed - checker.parser.CurrentByteIndex > _MAX_TOKEN_BYTES:
+            raise refused(checker.here(), "a tag or comment does not end")
+    checker.feed(b"", is_last=True)
+
+
+class _GmlChecker:
+    def __init__(self) -> None:
+        self.parser = expat.ParserCreate()
+        self.parser.buffer_text = True
+        self.parser.StartElementHandler = self._begin
+        self.parser.EndElementHandler = self._end
+        self.parser.CharacterDataHandler = self._text
+        self._depth = 0
+        self._words: list[str] | None = None  # of an element with numbers
+        self._characters = 0
+
+    def here(self) -> str:
+        return f"line {self.parser.CurrentLineNumber}"
+
+    def feed(self, chunk: bytes, *, is_last: bool = False) -> None:
+        try:
+            self.parser.Parse(chunk, is_last)
+        except expat.ExpatError as error:
+            raise refused(f"line {error.lineno}", f"this is no GML: {expat.ErrorString(error.code)}") from error
+
+    def _begin(self, tag: str, _: dict[str, str]) -> None:
+        self._depth += 1
+        if self._depth > _DEEPEST:
+            raise refused(self.here(), f"elements are nested more than {_DEEPEST} deep")
+        self._words, self._characters = [] if tag.rpartition(":")[2] in _NUMBERS else None, 0
+
+    def _text(self, text: str) -> None:
+        self._characters += len(text)
+        if self._characters > MAX_ROW_CHARACTERS:
+            raise refused(self.here(), f"a text is longer than {MAX_ROW_CHARACTERS} characters")
+        if self._words is not None:
+            self._words.append(text)
+
+    def _end(self, _: str) -> None:
+        self._depth -= 1
+        if self._words is not None:
+            for word in "".join(self._words).translate(_SEPARATORS).split():
+                if not _is_number(word):
+                    raise refused(self.here(), f"{word[:40]!r} is no number")
+        self._words, self._characters = None, 0
+
+
+def _is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from inspection.importers.assets.reference_systems import system_of_code
-from inspection.importers.rows import MAX_ROW_CHARACTERS, Columns, RawRow, Source, plain_cell, refused
-from inspection.importers.strict_json import JsonFault, parse_strict_json
+from inspection.importers.rows import MAX_ROW_CHARACTERS, Columns, RawRow, RowSource, plain_cell, refused
+from inspection.importers.strict_json import STRICT_DECODER, JsonFault, NotANumber, parse_strict_json
 from operation.reasons import reason_of
 
 _CHUNK = 256 * 1024
@@ -17,23 +17,12 @@ _CRS_NAME = re.compile(r'"crs"\s*:\s*\{[^{}]{0,200}"properties"\s*:\s*\{[^{}]{0,
 _BLANKS = re.compile(r"[ \t\r\n]*")
 
 
-class _NotANumber(Exception):
-    pass
-
-
-def _refuse_constant(text: str) -> float:
-    raise _NotANumber(text)
-
-
-_DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
-
-
-def geojson_source(path: Path) -> Source:
+def geojson_source(path: Path) -> RowSource:
     """Open a FeatureCollection, a Feature or a bare geometry. Raises AssetFileError."""
     with path.open(encoding="utf-8-sig") as file:
         head = _head(file, path)
     stated = _CRS_NAME.search(head)
-    source = Source("geojson", lambda: _rows(path))
+    source = RowSource("geojson", lambda: _rows(path))
     if stated is not None:  # from the standard of 2008; some programs still write it
         source.crs = system_of_code(stated[1], "crs")
     return source
@@ -90,7 +79,7 @@ def _features(file: TextIO) -> Iterator[Any]:
             return
         if len(window) > MAX_ROW_CHARACTERS:
             raise refused("", 'this JSON has no "features", or they come very late')
-    yield from _Scanner(file, window, match.end()).features()
+    yield from _FeatureScanner(file, window, match.end()).features()
 
 
 def _single(text: str) -> Iterator[Any]:
@@ -107,7 +96,7 @@ def _single(text: str) -> Iterator[Any]:
         raise refused("", "this JSON is no GeoJSON")
 
 
-class _Scanner:
+class _FeatureScanner:
     """A sliding window on the text, with one feature at a time in memory."""
 
     def __init__(self, file: TextIO, window: str, at: int) -> None:
@@ -144,8 +133,8 @@ class _Scanner:
             raise refused(place, "this is no GeoJSON feature")
         while True:
             try:
-                feature, end = _DECODER.raw_decode(self.window, self.at)
-            except _NotANumber as error:
+                feature, end = STRICT_DECODER.raw_decode(self.window, self.at)
+            except NotANumber as error:
                 raise refused(place, f"{error} is no number in JSON") from error
             except RecursionError as error:
                 raise refused(place, "the feature is nested too deeply") from error

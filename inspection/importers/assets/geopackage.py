@@ -13,7 +13,7 @@ from pyproj import CRS
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.assets.reference_systems import system_of_code, system_of_wkt
 from inspection.importers.assets.wkb import geometry_of_wkb
-from inspection.importers.rows import MAX_ROW_CHARACTERS, MAX_ROWS, Columns, RawRow, Source, plain_cell, refused
+from inspection.importers.rows import MAX_ROW_CHARACTERS, MAX_ROWS, Columns, RawRow, RowSource, plain_cell, refused
 
 _STEPS_BETWEEN_LOOKS = 10_000
 _MAX_STEPS = 50_000_000  # SQLite's virtual machine steps for one query; a real table of 200,000 rows needs a fifth
@@ -24,7 +24,7 @@ _UNDEFINED = {-1, 0}
 
 
 @contextmanager
-def geopackage_source(path: Path, layer: str, *, has_system: bool) -> Iterator[Source]:
+def geopackage_source(path: Path, layer: str, *, has_system: bool) -> Iterator[RowSource]:
     """Open a layer. has_system: the user names the reference system, so an undefined one is no fault. Raises AssetFileError."""
     _refuse_if_cut_off(path)
     database = sqlite3.connect(f"file:{quote(str(path))}?mode=ro&immutable=1", uri=True)
@@ -41,7 +41,7 @@ def geopackage_source(path: Path, layer: str, *, has_system: bool) -> Iterator[S
         shown = tuple(column for column in columns if column != geometry_column)
         Columns().check(shown, name)
         system = None if has_system else _system(database, system_id, name)
-        yield Source(
+        yield RowSource(
             "geopackage", lambda: _rows(database, name, geometry_column, shown), crs=system, layer=name, layers=tuple(layers)
         )  # fmt: skip
     except sqlite3.Error as error:

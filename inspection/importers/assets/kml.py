@@ -7,7 +7,7 @@ from typing import IO, Any
 from xml.parsers import expat
 
 from inspection.geodesy.geometry_validator import GeometryFault
-from inspection.importers.rows import MAX_ROW_CHARACTERS, AssetFileError, Columns, RawRow, Source, plain_cell, refused
+from inspection.importers.rows import MAX_ROW_CHARACTERS, AssetFileError, Columns, RawRow, RowSource, plain_cell, refused
 
 _CHUNK = 64 * 1024
 _MAX_TOKEN_LENGTH = 256 * 1024  # bytes of one tag or comment
@@ -20,13 +20,13 @@ _BLANK = re.compile(r"\s+")
 Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 
 
-def kml_source(opened: Opener, file_format: str = "kml") -> Source:
+def kml_source(opened: Opener, file_format: str = "kml") -> RowSource:
     """Open a KML document. KML is always in WGS84, longitude first."""
-    return Source(file_format, lambda: _rows(opened))
+    return RowSource(file_format, lambda: _rows(opened))
 
 
 def _rows(opened: Opener) -> Iterator[RawRow]:
-    reader = _Reader()
+    reader = _KmlReader()
     fed = 0
     with opened() as file:
         while chunk := file.read(_CHUNK):
@@ -39,7 +39,7 @@ def _rows(opened: Opener) -> Iterator[RawRow]:
         yield from reader.take()
 
 
-class _Reader:
+class _KmlReader:
     def __init__(self) -> None:
         self.parser = expat.ParserCreate()
         self.parser.buffer_text = True

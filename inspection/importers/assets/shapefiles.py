@@ -13,7 +13,7 @@ import shapefile
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.archive import Archive
 from inspection.importers.assets.reference_systems import MAX_WKT_CHARACTERS, system_of_wkt
-from inspection.importers.rows import MAX_ROWS, Columns, RawRow, Source, plain_cell, refused, unique_names
+from inspection.importers.rows import MAX_ROWS, Columns, RawRow, RowSource, plain_cell, refused, unique_names
 
 _HEADER_BYTES = 100
 _MAX_RECORD_BYTES = 1024 * 1024  # of one geometry; 10,000 vertices with height and measure take a third of it
@@ -25,7 +25,7 @@ _DAMAGED = (shapefile.ShapefileException, struct.error, ValueError, KeyError, In
 
 
 @contextmanager
-def shapefile_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[Source]:
+def shapefile_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[RowSource]:
     """Open a layer. has_system: the user names the reference system, so a missing .prj is no fault. Raises AssetFileError."""
     members = {name.lower(): name for name in archive.names if not PurePosixPath(name).name.startswith(".")}
     stems = sorted(name[:-4] for name in members if name.endswith(".shp") and not name.startswith("__macosx/"))
@@ -51,7 +51,7 @@ def shapefile_source(archive: Archive, layer: str, *, has_system: bool) -> Itera
             _look_table_over(table, members[f"{stem}.dbf"])
             stated = archive.text(members[f"{stem}.cpg"], 100) if f"{stem}.cpg" in members else ""
             encoding = _encoding(stated, table)
-        source = Source("shapefile", lambda: _rows(shapes, offsets, table, encoding, shape_name), crs=system)
+        source = RowSource("shapefile", lambda: _rows(shapes, offsets, table, encoding, shape_name), crs=system)
         source.layer, source.layers = PurePosixPath(shape_name).stem, layers
         yield source
 

@@ -52,7 +52,7 @@ class ColumnSurvey:
 
 
 @dataclass
-class Survey:
+class AssetFileSurvey:
     columns: dict[str, ColumnSurvey]
     rows: int = 0
     without_geometry: int = 0
@@ -61,9 +61,9 @@ class Survey:
     extent: tuple[float, float, float, float] | None = None
 
 
-def survey_of(rows: Iterable[Row], columns: Iterable[str] = ()) -> Survey:
+def survey_of(rows: Iterable[Row], columns: Iterable[str] = ()) -> AssetFileSurvey:
     """Survey every row once, with little memory."""
-    found = Survey({name: ColumnSurvey(name) for name in columns})
+    found = AssetFileSurvey({name: ColumnSurvey(name) for name in columns})
     vertices = 0
     for row in rows:
         found.rows += 1
@@ -163,7 +163,7 @@ _FOLDED = str.maketrans(
 )
 
 
-def suggested_mapping(survey: Survey, *, file_name: str = "", geometry_columns: dict[str, str] | None = None) -> dict[str, Any]:
+def suggested_mapping(survey: AssetFileSurvey, *, file_name: str = "", geometry_columns: dict[str, str] | None = None) -> dict[str, Any]:
     """Return a mapping in the shape of an import's parameters, without what cannot be guessed."""
     columns: dict[str, str] = {}
     for role in ("key", "external_id", "ref", "name", "operator", "voltage", "circuits", "height", "subtype"):
@@ -179,7 +179,7 @@ def suggested_mapping(survey: Survey, *, file_name: str = "", geometry_columns: 
     return found
 
 
-def _column_for(role: str, survey: Survey, taken: dict[str, str]) -> str | None:
+def _column_for(role: str, survey: AssetFileSurvey, taken: dict[str, str]) -> str | None:
     by_name = {_folded(name): name for name in reversed(survey.columns)}
     for word in _NAMES[role]:
         name = by_name.get(_folded(word))
@@ -194,13 +194,13 @@ def _column_for(role: str, survey: Survey, taken: dict[str, str]) -> str | None:
     return None
 
 
-def _can_be_key(column: ColumnSurvey, survey: Survey) -> bool:
+def _can_be_key(column: ColumnSurvey, survey: AssetFileSurvey) -> bool:
     """Whether each row has a value, without duplicates as far as values were counted."""
     repeated = column.values is not None and any(count > 1 for count in column.values.values())
     return column.filled == survey.rows and not repeated
 
 
-def _kind(survey: Survey, file_name: str) -> Any:
+def _kind(survey: AssetFileSurvey, file_name: str) -> Any:
     by_name = {_folded(name): name for name in reversed(survey.columns)}
     for word in _KIND_COLUMNS:
         column = survey.columns.get(by_name.get(word, ""))
@@ -223,7 +223,7 @@ def _kind_of(value: str) -> str | None:
     return next((kind for kind, names in _KINDS.items() if any(word == name or word == f"{name}s" for name in names)), None)
 
 
-def _units(survey: Survey, columns: dict[str, str]) -> dict[str, str]:
+def _units(survey: AssetFileSurvey, columns: dict[str, str]) -> dict[str, str]:
     units = {}
     if name := columns.get("voltage"):
         numbers = [number for sample in survey.columns[name].samples if (number := number_of(str(sample))) is not None]

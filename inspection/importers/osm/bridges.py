@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.importers.osm.records import AssetRecord
+from inspection.importers.osm.records import OsmAssetRecord
 from inspection.importers.osm.tags import bridge_width_m, height_m
 
 LYING_ON_SHARE = 0.5  # a way is on an area if at least half of its length is
@@ -39,7 +39,7 @@ class BridgeArea:
     polygon: Polygon | MultiPolygon
 
 
-def bridges_of(ways: Sequence[BridgeWay], areas: Sequence[BridgeArea]) -> list[AssetRecord]:
+def bridges_of(ways: Sequence[BridgeWay], areas: Sequence[BridgeArea]) -> list[OsmAssetRecord]:
     """Return one record per bridge: every area with the ways on it, and every way that is on no area."""
     owner = _area_of_each_way(ways, areas)
     parts: dict[int, list[BridgeWay]] = {index: [] for index in range(len(areas))}
@@ -73,16 +73,16 @@ def _area_under(way: BridgeWay, areas: Sequence[BridgeArea], tree: STRtree) -> i
     return near[int(np.argmax([line.intersection(polygon).length for polygon in polygons]))]
 
 
-def _bridge_of_area(area: BridgeArea, ways: Sequence[BridgeWay]) -> AssetRecord:
+def _bridge_of_area(area: BridgeArea, ways: Sequence[BridgeWay]) -> OsmAssetRecord:
     ordered = sorted(ways, key=lambda way: way.osm_id)
-    return AssetRecord(
+    return OsmAssetRecord(
         kind="bridge", subtype="area", osm_type=area.osm_type, osm_id=area.osm_id, geometry=area.polygon,
         centre=inner_point(area.polygon), tags=dict(area.tags), height_m=height_m(area.tags),
         parts=tuple({"osm_id": way.osm_id, "tags": dict(way.tags)} for way in ordered),
     )  # fmt: skip
 
 
-def _bridge_of_way(way: BridgeWay) -> AssetRecord:
+def _bridge_of_way(way: BridgeWay) -> OsmAssetRecord:
     """Return a way's bridge: a closed way tagged area=yes is the outline; any other is widened to both sides, flat at its ends."""
     frame = LocalFrame.around(*way.points[0])
     metres = frame.to_metres(way.points)
@@ -95,7 +95,7 @@ def _bridge_of_way(way: BridgeWay) -> AssetRecord:
         middle = LonLat(*map(float, frame.to_degrees(np.array([[centre.x, centre.y]]))[0]))
     else:
         middle = inner_point(shapely.transform(polygon, frame.to_degrees))
-    return AssetRecord(
+    return OsmAssetRecord(
         kind="bridge", subtype="way", osm_type="w", osm_id=way.osm_id, geometry=shapely.transform(polygon, frame.to_degrees), centre=middle,
         tags=dict(way.tags), height_m=height_m(way.tags), length_m=way.length_m, node_osm_ids=way.node_osm_ids,
     )  # fmt: skip

@@ -1,7 +1,6 @@
 """Overpass requests for an area's infrastructure, with a limit of the area."""
 
 import io
-import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from osmium.osm import mutable
 
 from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, open_unpacked
 from inspection.importers.osm.records import Extent
+from inspection.importers.strict_json import STRICT_DECODER, NotANumber
 
 EARTH_RADIUS_KM = 6_371.0088  # IUGG mean radius
 QUERY_TIMEOUT_S = 180
@@ -75,17 +75,6 @@ _MEMBER_TYPES = {"node": "n", "way": "w", "relation": "r"}
 _SPACE = " \t\r\n"
 
 
-class _NotANumber(Exception):
-    pass
-
-
-def _refuse_constant(text: str) -> float:
-    raise _NotANumber(text)
-
-
-_DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
-
-
 def rewrite_as_pbf(source: Path, file_format: OsmFormat, target: Path) -> str | None:
     """Write the elements of an Overpass response to a PBF file and return the stated age of its data.
 
@@ -94,7 +83,7 @@ def rewrite_as_pbf(source: Path, file_format: OsmFormat, target: Path) -> str | 
     writer = osmium.SimpleWriter(osmium.io.File(str(target), "pbf"), overwrite=True)
     try:
         with open_unpacked(source, file_format) as file:
-            scanner = _Scanner(io.TextIOWrapper(file, encoding="utf-8-sig"))
+            scanner = _ElementScanner(io.TextIOWrapper(file, encoding="utf-8-sig"))
             timestamp = _timestamp(scanner.text_before_elements())
             for index, element in enumerate(scanner.elements()):
                 _write(writer, element, f"elements[{index}]")
@@ -108,7 +97,7 @@ def rewrite_as_pbf(source: Path, file_format: OsmFormat, target: Path) -> str | 
 
 
 @dataclass
-class _Scanner:
+class _ElementScanner:
     """A sliding window on the text, with one element at a time in memory."""
 
     file: TextIO
@@ -163,8 +152,8 @@ class _Scanner:
             raise OsmFileError(f"elements[{index}] is no object.")
         while True:
             try:
-                element, end = _DECODER.raw_decode(self.window)
-            except _NotANumber as error:
+                element, end = STRICT_DECODER.raw_decode(self.window)
+            except NotANumber as error:
                 raise OsmFileError(f"elements[{index}] has {error}, which is no number.") from error
             except RecursionError as error:
                 raise OsmFileError(f"elements[{index}] is nested too deeply.") from error
@@ -181,8 +170,8 @@ class _Scanner:
 def _timestamp(preamble: str) -> str | None:
     """Return osm3s.timestamp_osm_base from the preamble, which ends where the elements begin."""
     try:
-        stated = _DECODER.decode(preamble.rstrip().rstrip(",") + "}")["osm3s"]["timestamp_osm_base"]
-    except (ValueError, KeyError, TypeError, RecursionError, _NotANumber):
+        stated = STRICT_DECODER.decode(preamble.rstrip().rstrip(",") + "}")["osm3s"]["timestamp_osm_base"]
+    except (ValueError, KeyError, TypeError, RecursionError, NotANumber):
         return None
     return stated if isinstance(stated, str) else None
 

@@ -19,7 +19,7 @@ from inspection.importers.osm import tags as meaning
 from inspection.importers.osm.bridges import BridgeArea, BridgeWay, BrokenArea, bridges_of, polygon_of_relation, polygon_of_ring
 from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, Progress, examine
 from inspection.importers.osm.overpass import rewrite_as_pbf
-from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
+from inspection.importers.osm.records import Extent, OsmAssetRecord, OsmContent
 from operation.reasons import Reason
 
 MAX_NODES_KEPT = 50_000_000  # four times the nodes of all the world's power lines; more is not infrastructure
@@ -29,7 +29,7 @@ BATCH = 5_000
 _CHUNK = 20_000
 _NOWHERE = (float("nan"), float("nan"))
 
-Take = Callable[[list[AssetRecord]], None]
+Take = Callable[[list[OsmAssetRecord]], None]
 """Is given records, some thousand at a time, and keeps none of them."""
 
 
@@ -57,11 +57,11 @@ def read_osm(path: Path, progress: Progress | None = None, take: Take | None = N
     file_format = examine(path, progress)
     try:
         if file_format not in {OsmFormat.JSON, OsmFormat.JSON_GZIP, OsmFormat.JSON_BZIP2}:
-            return _Reader(osmium.io.File(str(path), file_format.value), progress, take).content(None)
+            return _OsmReader(osmium.io.File(str(path), file_format.value), progress, take).content(None)
         with TemporaryDirectory() as folder:
             rewritten = Path(folder) / "overpass.osm.pbf"
             timestamp = rewrite_as_pbf(path, file_format, rewritten)
-            return _Reader(osmium.io.File(str(rewritten), "pbf"), progress, take).content(timestamp)
+            return _OsmReader(osmium.io.File(str(rewritten), "pbf"), progress, take).content(timestamp)
     except (RuntimeError, ValueError, OSError, EOFError, IndexError, OverflowError, osmium.InvalidLocationError) as error:
         if isinstance(error, OsmFileError):
             raise
@@ -73,7 +73,7 @@ class _Batch:
 
     def __init__(self, take: Take | None) -> None:
         self._take = take
-        self.kept: list[AssetRecord] = []
+        self.kept: list[OsmAssetRecord] = []
         self.kinds: Counter[tuple[str, str]] = Counter()
         self.is_unsorted = False
         self._row_of: dict[int, int] = {}  # of stored supports: the last one of a number counts
@@ -81,7 +81,7 @@ class _Batch:
         self._bounds: list[tuple[float, float, float, float]] = []
         self.extent: Extent | None = None
 
-    def add_sorted(self, record: AssetRecord) -> None:
+    def add_sorted(self, record: OsmAssetRecord) -> None:
         """Add a support; files have supports in the order of their numbers, without duplicates."""
         self.is_unsorted |= record.osm_id <= self._last_id
         self._last_id = record.osm_id
@@ -95,7 +95,7 @@ class _Batch:
             self._row_of[record.osm_id] = len(self.kept)
         self.add(record)
 
-    def add(self, record: AssetRecord) -> None:
+    def add(self, record: OsmAssetRecord) -> None:
         self.kinds[record.kind, record.subtype] += 1
         self._bounds.append(record.geometry.bounds)
         self.kept.append(record)
@@ -119,7 +119,7 @@ class _Batch:
         self._bounds = []
 
 
-class _Reader:
+class _OsmReader:
     """The passes over one file, in order; each stores only what a later one or a record needs."""
 
     def __init__(self, file: Any, progress: Progress | None, take: Take | None) -> None:
@@ -259,7 +259,7 @@ class _Reader:
                 self.skipped["node_not_on_earth"] += 1
                 continue
             place = LonLat(node.location.lon, node.location.lat)
-            record = AssetRecord(
+            record = OsmAssetRecord(
                 kind="tower", subtype=kind, osm_type="n", osm_id=node.id, geometry=Point(place), centre=place, tags=tags,
                 voltages_v=meaning.voltages_v(tags.get("voltage")), circuits=meaning.circuits(tags.get("circuits")),
                 height_m=meaning.height_m(tags),
@@ -387,16 +387,16 @@ def _middle(points: FloatArray) -> LonLat:
     return LonLat(*map(float, points[index] + step * (along[-1] / 2 - along[index]) / steps[index]))
 
 
-def _line_record(way: _Way, kind: str, points: FloatArray, length_m: float, node_ids: tuple[int, ...]) -> AssetRecord:
-    return AssetRecord(
+def _line_record(way: _Way, kind: str, points: FloatArray, length_m: float, node_ids: tuple[int, ...]) -> OsmAssetRecord:
+    return OsmAssetRecord(
         kind="line", subtype=kind, osm_type="w", osm_id=way.osm_id, geometry=LineString(points), centre=_middle(points), tags=way.tags,
         voltages_v=meaning.voltages_v(way.tags.get("voltage")), circuits=meaning.circuits(way.tags.get("circuits")),
         height_m=meaning.height_m(way.tags), length_m=length_m, is_flyable=meaning.is_flyable_line(way.tags), node_osm_ids=node_ids,
     )  # fmt: skip
 
 
-def _railway_record(way: _Way, kind: str, points: FloatArray, length_m: float, node_ids: tuple[int, ...]) -> AssetRecord:
-    return AssetRecord(
+def _railway_record(way: _Way, kind: str, points: FloatArray, length_m: float, node_ids: tuple[int, ...]) -> OsmAssetRecord:
+    return OsmAssetRecord(
         kind="railway", subtype=kind, osm_type="w", osm_id=way.osm_id, geometry=LineString(points), centre=_middle(points), tags=way.tags,
         voltages_v=meaning.voltages_v(way.tags.get("voltage")), length_m=length_m, is_flyable=meaning.is_flyable_railway(way.tags),
         node_osm_ids=node_ids,

@@ -17,7 +17,7 @@ Extent = tuple[float, float, float, float]  # west, south, east, north [deg]
 
 
 @dataclass(frozen=True)
-class AssetRecord:
+class OsmAssetRecord:
     """An asset as OSM describes it. geometry is in WGS84, lon lat; lengths and heights in metres; None means "not stated"."""
 
     kind: str  # tower, line, railway, bridge
@@ -75,7 +75,7 @@ class OsmContent:
     records is empty if they were passed on in batches; kinds counts all of them by kind and subtype.
     """
 
-    records: list[AssetRecord]
+    records: list[OsmAssetRecord]
     kinds: Counter[tuple[str, str]]
     is_unsorted: bool  # an object may have been passed twice
     counts: dict[str, Any]

@@ -9,7 +9,7 @@ from pyproj.exceptions import CRSError
 
 from inspection.importers.gdal_process import GdalProcess, GdalRefusal, started
 from inspection.importers.terrain.raster import (
-    Kind,
+    PostKind,
     TerrainFileError,
     Window,
     datum_of_system,
@@ -100,7 +100,7 @@ class GeoTiff:
         for left, top, across, down in absent:  # not in the file: a sparse one omits empty parts
             part = slice(top - row, top - row + down), slice(left - column, left - column + across)
             window.heights_m[part] = np.nan
-            window.kinds[part] = Kind.DECLARED_VOID
+            window.kinds[part] = PostKind.DECLARED_VOID
         return window
 
     def _check_size(self, head: dict[str, Any]) -> None:

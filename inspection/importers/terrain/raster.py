@@ -13,7 +13,7 @@ from inspection.terrain.heights import BLOCK_SIZE, MAX_HEIGHT_M, MIN_HEIGHT_M, H
 from operation.reasons import Reason
 
 
-class Kind(IntEnum):
+class PostKind(IntEnum):
     """Kind of a post."""
 
     HEIGHT = 0
@@ -70,9 +70,9 @@ def window_of(raw: NDArray[np.generic], declared_void: float | None, *, scale: f
             declared = np.isnan(values) if np.isnan(declared_void) else _is_void(raw, values, declared_void)
         heights = values * scale + offset_m
         undeclared = ~((heights >= MIN_HEIGHT_M) & (heights <= MAX_HEIGHT_M)) & ~declared
-        kinds = np.where(declared, Kind.DECLARED_VOID, np.where(undeclared, Kind.UNDECLARED_VOID, Kind.HEIGHT)).astype(np.uint8)
+        kinds = np.where(declared, PostKind.DECLARED_VOID, np.where(undeclared, PostKind.UNDECLARED_VOID, PostKind.HEIGHT)).astype(np.uint8)
         metres = heights.astype(np.float32)
-    metres[kinds != Kind.HEIGHT] = np.nan
+    metres[kinds != PostKind.HEIGHT] = np.nan
     return Window(metres, kinds)
 
 
@@ -96,14 +96,14 @@ def blocks_of(raster: Raster, size: int = BLOCK_SIZE) -> Iterator[Block]:
             window = raster.window(row, column, rows, columns)
             own = window.kinds[: rows if row + rows == raster.height else -1, : columns if column + columns == raster.width else -1]
             grid = None
-            if (window.kinds == Kind.HEIGHT).any():
+            if (window.kinds == PostKind.HEIGHT).any():
                 west, north = raster.west_deg + column * raster.step_lon_deg, raster.north_deg - row * raster.step_lat_deg
                 grid = HeightGrid(west, north, raster.step_lon_deg, raster.step_lat_deg, window.heights_m)
             yield Block(
                 grid,
-                posts=int((own != Kind.OUTSIDE).sum()),
-                declared_voids=int((own == Kind.DECLARED_VOID).sum()),
-                undeclared_voids=int((own == Kind.UNDECLARED_VOID).sum()),
+                posts=int((own != PostKind.OUTSIDE).sum()),
+                declared_voids=int((own == PostKind.DECLARED_VOID).sum()),
+                undeclared_voids=int((own == PostKind.UNDECLARED_VOID).sum()),
                 share=done / number,
             )
 
@@ -118,7 +118,7 @@ class TerrainFileError(ValueError):
     """Raised for a file that is no terrain model, with the reason."""
 
 
-class Survey:
+class PostSurvey:
     """Counts each post of the blocks once, although blocks share their edges."""
 
     def __init__(self) -> None:

@@ -10,7 +10,7 @@ from pyproj.transformer import TransformerGroup
 
 from inspection.geodesy.wgs84 import FloatArray, distance_m
 from inspection.importers.terrain.geotiff import MAX_POSTS, GeoTiff
-from inspection.importers.terrain.raster import Kind, Raster, TerrainFileError, Window
+from inspection.importers.terrain.raster import PostKind, Raster, TerrainFileError, Window
 from inspection.terrain.heights import HeightGrid
 
 SAME_DEG = 2e-5  # some 2 m: ETRS89 and similar ones are treated as WGS 84
@@ -64,7 +64,7 @@ class SampledAnew:
             & (at <= np.array([self._tiff.width - 1, self._tiff.height - 1]) + 1e-6).all(axis=1)
         )
         heights = np.full(len(at), np.nan, dtype=np.float32)
-        kinds = np.full(len(at), Kind.OUTSIDE, dtype=np.uint8)
+        kinds = np.full(len(at), PostKind.OUTSIDE, dtype=np.uint8)
         if inside.any():
             heights[inside], kinds[inside] = self._sampled(at[inside])
         return Window(heights.reshape(rows, columns), kinds.reshape(rows, columns))
@@ -80,8 +80,8 @@ class SampledAnew:
         heights = HeightGrid(left, -top, 1.0, 1.0, window.heights_m).sample(at * [1.0, -1.0])
         nearest = np.clip(np.rint(at - [left, top]).astype(int), 0, [columns - 1, rows - 1])
         kinds = window.kinds[nearest[:, 1], nearest[:, 0]]
-        beside = np.isnan(heights) & (kinds == Kind.HEIGHT)  # a known post with a void among its interpolation neighbours
-        return heights, np.where(np.isnan(heights), np.where(beside, Kind.DECLARED_VOID, kinds), Kind.HEIGHT)
+        beside = np.isnan(heights) & (kinds == PostKind.HEIGHT)  # a known post with a void among its interpolation neighbours
+        return heights, np.where(np.isnan(heights), np.where(beside, PostKind.DECLARED_VOID, kinds), PostKind.HEIGHT)
 
     def _edge(self) -> FloatArray:
         share = np.linspace(0, 1, _EDGE_PLACES)

@@ -243,7 +243,7 @@ class _Record:
 
 def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -> tuple[list[ZoneRecord], list[str | Reason]]:
     """Return the zones, and notes for users on how the file was read; records with a fault are appended to unread."""
-    reader = _Reader(faults)
+    reader = _OpenAirReader(faults)
     for number, line in enumerate(text.splitlines(), start=1):
         with faults.gathering():
             reader.take(number, line)
@@ -259,7 +259,7 @@ def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -
     return reader.zones, notes
 
 
-class _Reader:
+class _OpenAirReader:
     def __init__(self, faults: FaultList) -> None:
         self.faults = faults
         self.zones: list[ZoneRecord] = []

@@ -94,7 +94,7 @@ class ZoneFile:
 
 
 @dataclass
-class _Read:
+class _ZonesRead:
     source_format: str
     records: list[ZoneRecord]
     provider: str = ""
@@ -136,7 +136,7 @@ def read_zones(data: bytes, *, leave_out_faulty: bool = False) -> ZoneFile:
     )
 
 
-def _storable(read: _Read, found: FaultList) -> list[ZoneRecord]:
+def _storable(read: _ZonesRead, found: FaultList) -> list[ZoneRecord]:
     """Return the records that the database can store; the others become unread."""
     kept = []
     for record in read.records:
@@ -155,7 +155,7 @@ def _are_all_of_records(faults: Sequence[GeometryFault], unread: Sequence[Unread
     return len(faults) < MAX_FAULTS and all(id(fault) in of_records and not isinstance(fault, TooMuch) for fault in faults)
 
 
-def _read_openair(data: bytes, faults: FaultList) -> _Read:
+def _read_openair(data: bytes, faults: FaultList) -> _ZonesRead:
     if len(data) > MAX_FILE_BYTES:
         raise GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")
     notes: list[str | Reason] = []
@@ -166,17 +166,17 @@ def _read_openair(data: bytes, faults: FaultList) -> _Read:
         notes.append("The text is not UTF-8 and was read as Windows-1252.")
     unread: list[UnreadRecord] = []
     zones, more = zones_of_openair(text, faults, unread)
-    return _Read("OpenAir", zones, notes=notes + more, unread=unread)
+    return _ZonesRead("OpenAir", zones, notes=notes + more, unread=unread)
 
 
-def _read_json(data: bytes, faults: FaultList) -> _Read:
+def _read_json(data: bytes, faults: FaultList) -> _ZonesRead:
     document = parse_strict_json(data, max_bytes=MAX_FILE_BYTES)
     read = _read_document(document, faults)
     read.unread = unread_of_document(document, faults.faults)
     return read
 
 
-def _read_document(document: Any, faults: FaultList) -> _Read:
+def _read_document(document: Any, faults: FaultList) -> _ZonesRead:
     if is_ed318(document):
         validity = stated_validity(document, faults)
         metadata = document.get("metadata")
@@ -184,12 +184,12 @@ def _read_document(document: Any, faults: FaultList) -> _Read:
         with faults.gathering():
             provider = text_of(metadata.get("provider"), "metadata.provider", MAX_NAME) if isinstance(metadata, dict) else ""
         notes: list[str] = []
-        return _Read("ED-318", zones_of_ed318(document, faults, notes), provider, validity, [*notes])
+        return _ZonesRead("ED-318", zones_of_ed318(document, faults, notes), provider, validity, [*notes])
     if is_ed269(document):
-        return _Read("ED-269", zones_of_ed269(document, faults))
+        return _ZonesRead("ED-269", zones_of_ed269(document, faults))
     if isinstance(document, dict) and isinstance(document.get("type"), str) and document["type"] in _GEOJSON:
         notes = []
-        return _Read("GeoJSON", zones_of_geojson(document, faults, notes), notes=[*notes])
+        return _ZonesRead("GeoJSON", zones_of_geojson(document, faults, notes), notes=[*notes])
     raise GeometryFault("", "this is neither GeoJSON nor an ED-269, ED-318 or OpenAir file")
 
 

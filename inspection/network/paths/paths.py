@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.legs import Attachment, Attachments, DirectLeg, NoWay, bends_of, joined
+from inspection.network.legs import Attachment, Attachments, DirectLeg, NoPath, bends_of, joined
 from inspection.network.paths.contracted_graph import ContractedGraph, FloatArray, NumberArray
 from inspection.network.paths.hub_labels import HubLabels, IntArray, entry_at
 from inspection.network.route_index import RouteIndex, route_index
@@ -86,10 +86,10 @@ class Travel:
         return PathEnds(self.way, self.leg_node, self.entry_leg, self.entry_label)
 
     def path(self, source: int, sink: int) -> IntArray:
-        """Nodes from the source to the sink; none for a direct leg. Raises NoWay where the length is inf."""
+        """Nodes from the source to the sink; none for a direct leg. Raises NoPath where the length is inf."""
         out, back = self.way[source, sink].tolist()
         if out == NO_WAY:
-            raise NoWay(source, sink)
+            raise NoPath(source, sink)
         if out == DIRECT:
             return np.zeros(0, dtype=np.int64)
         nodes: IntArray = _path(out, back, self.ends, self.index.contracted, self.index.labels)
@@ -99,7 +99,7 @@ class Travel:
         """Nodes of several ways (k, 2), source and sink, one after another, and where each way's begin (k + 1,); as `path`."""
         ways = self.way[legs[:, 0], legs[:, 1]]
         if (ways[:, 0] == NO_WAY).any():
-            raise NoWay(legs.tolist())
+            raise NoPath(legs.tolist())
         nodes, first = _paths(ways, self.ends, self.index.contracted, self.index.labels)
         return nodes, first
 

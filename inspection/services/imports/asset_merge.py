@@ -1,6 +1,6 @@
 """Stages the rows of a file, compares them with the assets of its source, and updates these to the file.
 
-OpenStreetMap files and other asset files differ in which assets belong to them (`Source`); the rest is the same. A row that a curator
+OpenStreetMap files and other asset files differ in which assets belong to them (`MergeSource`); the rest is the same. A row that a curator
 edited is changed only if it is to be replaced: the file's version is stored beside it, as source_facts. Assets of the source that are
 missing from the file are marked as vanished, never deleted.
 """
@@ -72,7 +72,7 @@ class Sample:
 
 
 @dataclass(frozen=True)
-class Source:
+class MergeSource:
     """The assets of a source, as SQL over a (an asset) and s (a staged row), with the values of `Merge`."""
 
     same: str
@@ -186,7 +186,7 @@ class Merge:
     def __init__(
         self,
         cursor: CursorWrapper,
-        source: Source,
+        source: MergeSource,
         *,
         replace_edited: bool,
         asset_set: int | None = None,

@@ -16,7 +16,7 @@ from inspection.importers.assets.mapping import AssetRecord, Mapping, Tally, che
 from inspection.importers.rows import AssetFileError
 from inspection.models import AssetSet, DataImport, ImportKind
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
-from inspection.services.imports.asset_merge import Merge, Source, staging
+from inspection.services.imports.asset_merge import Merge, MergeSource, staging
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 from inspection.services.imports.regions import join_region
 from inspection.services.proposals.reading import Progress, Provenance
@@ -90,7 +90,7 @@ def give_ids(asset_set: int, organisation: int, actor: int | None) -> None:
 EXPLANATIONS = ("kind", "columns", "units", "geometry")  # a user's description of the columns
 MAPPING_PARAMETERS = (*EXPLANATIONS, "crs", "layer", "leave_out_faulty")  # stored in the set for the next file
 ROWS_BETWEEN_WORDS = 2_000
-ASSET_SET = Source(
+ASSET_SET = MergeSource(
     same="a.asset_set_id = %(asset_set)s AND a.kind = s.kind AND a.source_key = s.source_key AND a.source_key <> ''",
     missing="a.asset_set_id = %(asset_set)s AND a.source_key <> ''",
     facts=(

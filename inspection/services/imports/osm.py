@@ -18,10 +18,10 @@ from django.utils.dateparse import parse_datetime
 
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
-from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
+from inspection.importers.osm.records import Extent, OsmAssetRecord, OsmContent
 from inspection.models import ROW_ACTIONS, Asset, ChangeAction, DataImport, ImportKind
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
-from inspection.services.imports.asset_merge import UNCHANGED, Merge, Sample, Source, staging
+from inspection.services.imports.asset_merge import UNCHANGED, Merge, MergeSource, Sample, staging
 from inspection.services.imports.regions import join_region
 from inspection.services.proposals.reading import Provenance
 from operation.reasons import Reason
@@ -39,7 +39,7 @@ Progress = Callable[[Reason, float], None]
 
 # Files of different regions, even overlapping neighbours, are independent: only rows written by an import with nearly the same extent may
 # vanish, and only those in the header's box, if it states one.
-OPENSTREETMAP = Source(
+OPENSTREETMAP = MergeSource(
     same="a.kind = s.kind AND a.osm_type = s.osm_type AND a.osm_id = s.osm_id",
     newer=_IS_NEWER,
     missing=f"""
@@ -141,7 +141,7 @@ def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapp
     with staging() as (cursor, copying):
         with copying() as copy:
 
-            def take(records: list[AssetRecord]) -> None:
+            def take(records: list[OsmAssetRecord]) -> None:
                 for row in _rows(records):
                     copy.write_row(row)
 
@@ -200,7 +200,7 @@ def _is_same_source(earlier: Sequence[float] | None, extent: Extent | None) -> b
     return bool(one.intersection(other).area >= SAME_SOURCE_OVERLAP * one.union(other).area)
 
 
-def _rows(records: Sequence[AssetRecord]) -> Iterator[tuple[Any, ...]]:
+def _rows(records: Sequence[OsmAssetRecord]) -> Iterator[tuple[Any, ...]]:
     geometries = np.array([record.geometry for record in records], dtype=object)
     wkb = shapely.to_wkb(shapely.set_srid(geometries, 4326), hex=True, include_srid=True)
     centres = shapely.points(np.array([record.centre for record in records], dtype=np.float64))

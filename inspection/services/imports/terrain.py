@@ -8,7 +8,7 @@ from typing import Any
 from django.contrib.gis.geos import Polygon
 from django.db import transaction
 
-from inspection.importers.terrain.raster import Survey, TerrainFileError, blocks_of
+from inspection.importers.terrain.raster import PostSurvey, TerrainFileError, blocks_of
 from inspection.importers.terrain.terrain_file import TerrainFile, datum_of, opened_terrain
 from inspection.models import DataImport, ImportKind, TerrainTile
 from inspection.reasons import notes_json
@@ -89,7 +89,7 @@ def sha256_of(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def facts_of(file: TerrainFile, survey: Survey, datum: str) -> dict[str, Any]:
+def facts_of(file: TerrainFile, survey: PostSurvey, datum: str) -> dict[str, Any]:
     """Return the content of a file, for users and the list of models. Raises TerrainFileError for one without heights."""
     if survey.blocks == 0:
         raise TerrainFileError(ONLY_VOIDS)
@@ -104,7 +104,7 @@ def facts_of(file: TerrainFile, survey: Survey, datum: str) -> dict[str, Any]:
 
 
 def _write(data_import: DataImport, file: TerrainFile, datum: str, progress: Progress | None) -> dict[str, Any]:
-    survey = Survey()
+    survey = PostSurvey()
     tiles: list[TerrainTile] = []
     for number, raster in enumerate(file.rasters):
         for block in blocks_of(raster):

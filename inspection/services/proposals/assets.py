@@ -11,7 +11,7 @@ from django.db import transaction
 
 from inspection.importers.assets.asset_file import AssetFile
 from inspection.importers.assets.mapping import Tally
-from inspection.importers.assets.survey import Survey, suggested_mapping, survey_of
+from inspection.importers.assets.survey import AssetFileSurvey, suggested_mapping, survey_of
 from inspection.importers.rows import AssetFileError, FaultyRows
 from inspection.models import ROW_ACTIONS, AssetSet, DataImport
 from inspection.services.facts import ASSET_FACTS, differing
@@ -105,7 +105,7 @@ def _compared(
     return Reading(summary | counts_of(file, tally, faults, ids) | {"by_kind": by_kind}, found.numbers, changes)
 
 
-def _nothing_to_read(file: AssetFile, survey: Survey) -> str:
+def _nothing_to_read(file: AssetFile, survey: AssetFileSurvey) -> str:
     if survey.geometries:
         return ""
     if file.source.file_format == "csv" and not file.source.geometry_columns:
@@ -113,7 +113,7 @@ def _nothing_to_read(file: AssetFile, survey: Survey) -> str:
     return "None of the rows has a geometry."
 
 
-def _summary(file: AssetFile, survey: Survey, name: str, stated: dict[str, Any], path: Path) -> dict[str, Any]:
+def _summary(file: AssetFile, survey: AssetFileSurvey, name: str, stated: dict[str, Any], path: Path) -> dict[str, Any]:
     suggested = suggested_mapping(survey, file_name=path.stem, geometry_columns=file.source.geometry_columns)
     role_of = {column: role for role, column in (suggested["columns"] | file.source.geometry_columns).items()}
     columns = [

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from django.contrib.gis.geos import MultiPolygon, Polygon
 
-from inspection.importers.terrain.raster import DatumFault, Survey, TerrainFileError, blocks_of
+from inspection.importers.terrain.raster import DatumFault, PostSurvey, TerrainFileError, blocks_of
 from inspection.importers.terrain.terrain_file import datum_of, opened_terrain
 from inspection.models import ROW_ACTIONS, ChangeAction, DataImport, TerrainTile
 from inspection.selectors.terrain import ground_truth
@@ -30,7 +30,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
     try:
         with opened_terrain(path) as file:
             datum = datum_of(file, _stated_datum(parameters))
-            survey, comparison = Survey(), _Comparison(provenance.file_name, datum)
+            survey, comparison = PostSurvey(), _Comparison(provenance.file_name, datum)
             for number, raster in enumerate(file.rasters):
                 for block in blocks_of(raster):
                     progress(Reason("reading_heights"), (number + block.share) / len(file.rasters))

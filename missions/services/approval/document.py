@@ -28,7 +28,7 @@ from mavlink.approved_route import (
     route_to_json,
 )
 from mavlink.fence import fence_of, rally_items
-from mavlink.intermediate_waypoints import with_points_between
+from mavlink.legs import with_points_between
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.vehicle_plan import FlightLoad, MissionItem, load_to_json
 from missions.models import LinkKind, Mission, Route, Waypoint

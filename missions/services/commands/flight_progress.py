@@ -12,10 +12,11 @@ from django.db import transaction
 from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.db.models.functions import Now
 
-from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
+from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState
 from missions.selectors.missions import approval_in_force
 from missions.services.approval.approval import change_state
 from missions.services.missions import note
+from planning.trajectory.waypoints import WaypointKind
 from workspace.live.changes import publish_live
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)

@@ -25,7 +25,7 @@ from missions.selectors.zones import departure_s, zone_margins
 from missions.services.approval.document import frozen_route
 from missions.services.approval.fence import rally_points, zones_beside
 from planning.clearance.nearby_zones import zones_near
-from planning.clearance.rtl_paths import InTheWay, Places, ReturnPoint, RtlPaths, Trouble
+from planning.clearance.rtl_paths import InTheWay, Places, ReturnPoint, RtlObstruction, RtlPaths
 from planning.clearance.surroundings import Surroundings
 from planning.clearance.zone_clearance import ZoneFacts
 
@@ -144,12 +144,12 @@ def _check(mission: Mission, route: Route) -> ReturnCheck:
 
 
 def checked_ways(checked: ReturnCheck, own: RtlBehaviour, ways: Sequence[RtlPaths], table: ZoneTable, *, where: str = "") -> ReturnCheck:
-    """Return the check with the troubles on these paths. where: text for their start; empty: waypoints of a route, by their numbers."""
-    found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
+    """Return the check with the obstructions on these paths. where: text for their start; empty: waypoints of a route, by their numbers."""
+    found = [obstruction for way in ways for obstruction in way.obstructions(_levels(way, own))]
     if not found:
         return checked
     safe_m = _safe_height_m(ways, own)
-    warnings = [*dict.fromkeys(_words(trouble, table, where) for trouble in found), _advice(own, safe_m)]
+    warnings = [*dict.fromkeys(_words(obstruction, table, where) for obstruction in found), _advice(own, safe_m)]
     return replace(checked, state=ReturnState.IN_THE_WAY, warnings=tuple(warnings), safe_height_m=safe_m)
 
 
@@ -161,7 +161,7 @@ class WaysNow:
     table: ZoneTable
 
     def checked(self, check: ReturnCheck, own: RtlBehaviour) -> ReturnCheck:
-        """Return the check with the troubles on these paths."""
+        """Return the check with the obstructions on these paths."""
         return checked_ways(check, own, self.ways, self.table, where=_("From where it is now"))
 
     def clear_heights_m(self, own: RtlBehaviour, lowest_m: float, step_m: float) -> list[float]:
@@ -171,7 +171,7 @@ class WaysNow:
         while height_m <= most_m:
             levels = [_levels(way, own.at_height(height_m)) for way in self.ways]
             pairs = list(zip(self.ways, levels, strict=True))
-            if all(way.most_agl_m(levels_m) <= most_m and not way.troubles(levels_m) for way, levels_m in pairs):
+            if all(way.most_agl_m(levels_m) <= most_m and not way.obstructions(levels_m) for way, levels_m in pairs):
                 found.append(height_m)
             height_m += step_m
         return found
@@ -294,32 +294,32 @@ def _safe_height_m(ways: Sequence[RtlPaths], own: RtlBehaviour) -> float | None:
         levels = [_levels(way, other) for way in ways]
         if any(way.most_agl_m(levels_m) > highest_m for way, levels_m in zip(ways, levels, strict=True)):
             return None
-        if not any(way.troubles(levels_m) for way, levels_m in zip(ways, levels, strict=True)):
+        if not any(way.obstructions(levels_m) for way, levels_m in zip(ways, levels, strict=True)):
             return height_m
         height_m += STEP_M
     return None
 
 
-def _along(trouble: Trouble) -> str:
-    """Return the text for the part of a route from which the trouble exists."""
-    values = {"first": trouble.first + 1, "last": trouble.last + 1}
-    if trouble.to_end and trouble.last > trouble.first:
+def _along(obstruction: RtlObstruction) -> str:
+    """Return the text for the part of a route from which the obstruction exists."""
+    values = {"first": obstruction.first + 1, "last": obstruction.last + 1}
+    if obstruction.to_end and obstruction.last > obstruction.first:
         return _("From waypoint %(first)s on") % values
-    if trouble.last > trouble.first:
+    if obstruction.last > obstruction.first:
         return _("Between waypoints %(first)s and %(last)s") % values
     return _("On the way to waypoint %(first)s") % values
 
 
-def _words(trouble: Trouble, table: ZoneTable, where: str) -> str:
-    goes = _("the path to the rally point") if trouble.is_rally else _("the return path")
-    zone = "" if trouble.zone is None else table.names[trouble.zone]
-    values = {"where": where or _along(trouble), "way": goes, "zone": zone, "height": f"{trouble.level_m:.0f}"}
+def _words(obstruction: RtlObstruction, table: ZoneTable, where: str) -> str:
+    goes = _("the path to the rally point") if obstruction.is_rally else _("the return path")
+    zone = "" if obstruction.zone is None else table.names[obstruction.zone]
+    values = {"where": where or _along(obstruction), "way": goes, "zone": zone, "height": f"{obstruction.level_m:.0f}"}
     return {
         InTheWay.ZONE: _("%(where)s, %(way)s crosses %(zone)s (%(height)s m above take-off)."),
         InTheWay.OBSTACLE: _("%(where)s, %(way)s is below safe clearance over towers or conductors (%(height)s m above take-off)."),
         InTheWay.GROUND: _("%(where)s, %(way)s is too close to the ground (%(height)s m above take-off)."),
         InTheWay.UNKNOWN_GROUND: _("%(where)s, the terrain below %(way)s is unknown."),
-    }[trouble.kind] % values
+    }[obstruction.kind] % values
 
 
 def _advice(own: RtlBehaviour, safe_m: float | None) -> str:

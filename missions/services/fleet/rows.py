@@ -18,7 +18,7 @@ Row = TypeVar("Row", Uav, UavType, Base)
 Facts = Callable[[Any], dict[str, Any]]
 
 
-class NameTaken(Exception):
+class FleetNameTaken(Exception):
     """Raised when another row of the same kind has this name; `subject` is the kind."""
 
     def __init__(self, subject: str = "uav") -> None:
@@ -79,7 +79,7 @@ def locked(row: Row, expected_revision: int | None) -> Row:
 def stored(row: Row, *, actor: User | None, action: str, before: dict[str, Any] | None, facts: Facts) -> Row:
     """Save a row that is new, changed or restored, with its history entry.
 
-    Raises NameTaken, ExternalIdTaken or SystemIdTaken.
+    Raises FleetNameTaken, ExternalIdTaken or SystemIdTaken.
     """
     try:
         with transaction.atomic():
@@ -90,7 +90,7 @@ def stored(row: Row, *, actor: User | None, action: str, before: dict[str, Any] 
             )  # fmt: skip
     except IntegrityError as error:
         if any(name in str(error) for name in NAMES_TAKEN):
-            raise NameTaken(SUBJECTS[type(row)]) from error
+            raise FleetNameTaken(SUBJECTS[type(row)]) from error
         if "uav_external_id_unique" in str(error):
             raise UavExternalIdTaken from error
         if "mavlink_system_id" in str(error):

@@ -18,12 +18,12 @@ TYPE_FIELDS = (
 
 
 def create_uav_type(*, organisation: Organisation, actor: User, values: dict[str, Any]) -> UavType:
-    """Create a type. values has some of TYPE_FIELDS, name among them. Raises NameTaken."""
+    """Create a type. values has some of TYPE_FIELDS, name among them. Raises FleetNameTaken."""
     return stored(UavType(organisation=organisation, **values), actor=actor, action="create", before=None, facts=_type_facts)
 
 
 def change_uav_type(*, uav_type: UavType, actor: User, values: dict[str, Any], expected_revision: int | None) -> UavType:
-    """Change a type. Raises FleetChanged or NameTaken."""
+    """Change a type. Raises FleetChanged or FleetNameTaken."""
     with transaction.atomic():
         held = locked(uav_type, expected_revision)
         before = _type_facts(held)
@@ -39,7 +39,7 @@ def delete_uav_type(*, uav_type: UavType, actor: User, expected_revision: int | 
 
 
 def restore_uav_type(*, organisation: Organisation, actor: User, key: int) -> UavType:
-    """Restore a deleted type. Raises NotDeleted or NameTaken."""
+    """Restore a deleted type. Raises NotDeleted or FleetNameTaken."""
     facts = facts_to_restore(UavType, organisation=organisation, key=key)
     values = {field: facts[field] for field in TYPE_FIELDS if field in facts}  # it may have been deleted before a field existed
     row = UavType(pk=key, organisation=organisation, revision=facts["revision"] + 1, **values)
@@ -47,13 +47,13 @@ def restore_uav_type(*, organisation: Organisation, actor: User, key: int) -> Ua
 
 
 def create_base(*, organisation: Organisation, actor: User, position: LonLat, values: dict[str, Any]) -> Base:
-    """Create a base. values has the name and optionally a note. Raises NameTaken."""
+    """Create a base. values has the name and optionally a note. Raises FleetNameTaken."""
     row = Base(organisation=organisation, location=Point(*position, srid=4326), **values)
     return stored(row, actor=actor, action="create", before=None, facts=_base_facts)
 
 
 def change_base(*, base: Base, actor: User, position: LonLat | None, values: dict[str, Any], expected_revision: int | None) -> Base:
-    """Change a base. Its UAVs take over a new name and keep their own positions. Raises FleetChanged or NameTaken."""
+    """Change a base. Its UAVs take over a new name and keep their own positions. Raises FleetChanged or FleetNameTaken."""
     with transaction.atomic():
         held = locked(base, expected_revision)
         before = _base_facts(held)
@@ -73,7 +73,7 @@ def delete_base(*, base: Base, actor: User, expected_revision: int | None) -> No
 
 
 def restore_base(*, organisation: Organisation, actor: User, key: int) -> Base:
-    """Restore a deleted base. Raises NotDeleted or NameTaken."""
+    """Restore a deleted base. Raises NotDeleted or FleetNameTaken."""
     facts = facts_to_restore(Base, organisation=organisation, key=key)
     row = Base(
         pk=key, organisation=organisation, name=facts["name"], note=facts["note"], location=Point(facts["position"], srid=4326),

@@ -1,4 +1,4 @@
-"""Plans on current map data: read the context, make the plan, and check it again if the map data changed meanwhile."""
+"""Plans on current map data: read the context, make the plan, check it again if the map data changed, and warm-up before the first."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -8,9 +8,14 @@ from typing import Any, ParamSpec
 from uuid import uuid4
 
 from django.conf import settings
+from django.db import Error, connections
 
+from inspection.network.route_index import asset_places, node_tree, route_index
+from inspection.network.spans import spans_of
+from inspection.network.warm_up import rehearse as rehearse_ways
+from inspection.selectors import NoGraph
 from inspection.selectors.planning import current_dataset_version, planning_read, terrain_at
-from missions.selectors.planning_context import planning_context, read_targets
+from missions.selectors.planning_context import current_airspace, planning_context, read_targets
 from operation.metrics import PLAN_SECONDS, PLANS, PLANS_REFUSED
 from operation.reasons import Reason
 from planning.checks.constraints import ZoneNotAvoided
@@ -21,6 +26,8 @@ from planning.planner import ZonesNotSettled, plan, plan_on_map
 from planning.progress import OnPlanProgress, PlanProgress, no_progress
 from planning.request import PlanRequest
 from planning.solver.solver import Stop, never
+from planning.solver.warm_up import rehearse as rehearse_solvers
+from planning.trajectory.warm_up import rehearse as rehearse_drawing
 from workspace.jobs.planning_lock import hold_planning_lock, release_planning_lock
 from workspace.jobs.services import JobCancelled
 
@@ -132,3 +139,23 @@ def make_plan(
         if still_clear is not None:
             return plan_to_json(still_clear, as_text=as_text)
     raise GraphOutdated
+
+
+def warm_up() -> None:
+    """Load the compiled core, the graph and its index. Without a graph or a database the first plan loads them."""
+    rehearse_ways()
+    rehearse_solvers()
+    rehearse_drawing()
+    try:
+        airspace = current_airspace()
+    except NoGraph:
+        return
+    except Error as error:
+        logger.warning("the graph is not loaded yet: %s", error)
+        return
+    finally:
+        connections.close_all()
+    for part in (route_index, node_tree, asset_places):
+        part(airspace.graph)
+    asset_places(airspace.whole_graph)
+    spans_of(airspace.network)

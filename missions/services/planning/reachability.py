@@ -14,7 +14,7 @@ from planning.airspace import Airspace, airspace_on, column_m, zone_at, zone_cho
 from planning.assignment.refusals import groundings
 from planning.energy.path_cost import FlightClass
 from planning.problem import UavStart
-from planning.reachability.reachability import Flight, FlownNetwork, reach
+from planning.reachability.reachability import FlownNetwork, PossibleFlight, reach
 from planning.reachability.reachable_assets import Reach, Reachability
 from planning.request import ROUTE_ENDS, BaseRequest, EndAction, PlanRequest, UavRequest
 from workspace.locale_negotiation import number_text
@@ -82,7 +82,7 @@ def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), bo
 
 def _flights(
     request: PlanRequest, starts: Sequence[BaseRequest], airspace: Airspace
-) -> tuple[list[_Start], list[Flight], list[dict[str, Any]]]:
+) -> tuple[list[_Start], list[PossibleFlight], list[dict[str, Any]]]:
     """Return the flights that can take off, and the reasons of the others."""
     starting, flights, grounded = [], [], []
     for base in starts or (None,):
@@ -97,7 +97,9 @@ def _flights(
             action = request.end_action(number)
             limit_m = UavStart(uav.max_range_m, ROUTE_ENDS[action]).limit_m
             starting.append(_Start(number, name))
-            flights.append(Flight(uav.position, ROUTE_ENDS[action], limit_m, action is not EndAction.HOVER, _class_of(uav, request)))
+            flights.append(
+                PossibleFlight(uav.position, ROUTE_ENDS[action], limit_m, action is not EndAction.HOVER, _class_of(uav, request))
+            )
     return starting, flights, grounded
 
 
@@ -108,7 +110,7 @@ def _class_of(uav: UavRequest, request: PlanRequest) -> FlightClass | None:
     return FlightClass(uav.performance, uav.cruise_speed_mps)
 
 
-def _no_landing(airspace: Airspace, flights: Sequence[Flight]) -> np.ndarray | None:
+def _no_landing(airspace: Airspace, flights: Sequence[PossibleFlight]) -> np.ndarray | None:
     """Return the nodes over zones whose ceiling is below the flight; None where no flight lands at its target."""
     if not any(one.lands_there for one in flights):
         return None

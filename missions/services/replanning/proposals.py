@@ -12,7 +12,7 @@ from missions.services.missions import request_of_mission
 from missions.services.planning.planner import make_plan
 from missions.services.replanning.composing import Continued, continued_route
 from missions.services.replanning.leaving import LEAD_S, CannotLeave, Leaving, leaving_of
-from missions.services.replanning.rest import Cause, Rest
+from missions.services.replanning.rest import OfferCause, Rest
 from missions.services.replanning.zones_ahead import zone_ahead
 from operation.reasons import Reason, english
 from planning.energy.conditions import conditions_from_json
@@ -83,7 +83,7 @@ class _Assignable:
     free: frozenset[int]
 
 
-def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetime) -> Field:
+def field_of(mission: Mission, rests: Sequence[Rest], cause: OfferCause, now: datetime) -> Field:
     conditions = conditions_from_json(mission.conditions)
     asked = request_of_mission(mission=mission)
     leavings: dict[int, Leaving] = {}

@@ -35,7 +35,7 @@ COMING_BACK = (CommandKind.RETURN, CommandKind.LAND, CommandKind.ABORT)
 
 
 @dataclass(frozen=True)
-class Cause:
+class OfferCause:
     """Cause of an offer: `uav-out`, `zone-active`, `battery-short` or `asked-for`, with the UAV (by its key) or zone concerned."""
 
     code: str
@@ -74,7 +74,7 @@ class Rest:
         return str(self.route.mission_uav.name)
 
 
-def rests_of(mission: Mission, cause: Cause, now: datetime) -> list[Rest]:
+def rests_of(mission: Mission, cause: OfferCause, now: datetime) -> list[Rest]:
     """Return the rests of UAVs that have targets left, or whose targets others must fly. The mission is as selectors load it."""
     approval = approval_in_force(mission)
     if approval is None:
@@ -93,7 +93,7 @@ def rests_of(mission: Mission, cause: Cause, now: datetime) -> list[Rest]:
 
 
 def _rest(
-    route: Route, approved: Mapping[str, Any], approval: Approval, targets: Mapping[int, InspectionTarget], cause: Cause, now: datetime
+    route: Route, approved: Mapping[str, Any], approval: Approval, targets: Mapping[int, InspectionTarget], cause: OfferCause, now: datetime
 ) -> Rest:
     key = route.mission_uav.uav_id
     uav = None if key is None else Uav.objects.filter(pk=key).first()
@@ -137,7 +137,7 @@ def _orders(uav: Uav | None, approval: Approval) -> list[UavCommand]:
     return [] if start is None else list(done.filter(sequence__gte=start.sequence).order_by("-sequence"))
 
 
-def _out(route: Route, uav: Uav | None, orders: Sequence[UavCommand], cause: Cause) -> Reason | None:
+def _out(route: Route, uav: Uav | None, orders: Sequence[UavCommand], cause: OfferCause) -> Reason | None:
     """Return why it does not continue; None where it does."""
     values = {"uav": route.mission_uav.name}
     if route.has_failed:

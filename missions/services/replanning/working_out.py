@@ -14,7 +14,7 @@ from missions.services.commands.refused import RefusalReason
 from missions.services.replanning.difference import difference_of
 from missions.services.replanning.offers import end_offer, held_offer
 from missions.services.replanning.proposals import Field, Proposal, field_of, proposals
-from missions.services.replanning.rest import Cause, rests_of
+from missions.services.replanning.rest import OfferCause, rests_of
 from missions.services.replanning.staleness import basis_of, valid_until
 from missions.services.replanning.storing import stored
 from operation.reasons import Reason, Why, reason_from_json, text_reason
@@ -39,7 +39,7 @@ def work_out_for_job(*, job: Job, stop: Stop, search_s: float, note: Callable[[f
 def _work_out(offer: ReplanOffer, stop: Stop, search_s: float, note: Callable[[float, Why], None]) -> None:
     now = timezone.now()
     mission = mission_of_organisation(offer.mission.organisation, offer.mission_id)
-    cause = Cause(offer.code, offer.cause.get("uav"), offer.cause.get("zone"))
+    cause = OfferCause(offer.code, offer.cause.get("uav"), offer.cause.get("zone"))
     if mission.state != MissionState.ACTIVE:
         return _close(offer, OfferState.OUTDATED, [Reason("mission_not_flying")])
     note(0.1, Reason("looking_up_rest"))

@@ -11,7 +11,7 @@ from missions.selectors.missions import mission_of_organisation
 from missions.selectors.stale_plans import leg_names
 from missions.selectors.zones import MetZone, flown_route, zones_met
 from missions.services.replanning.offers import suggest
-from missions.services.replanning.rest import Cause, Rest, rests_of
+from missions.services.replanning.rest import OfferCause, Rest, rests_of
 
 ZONE_ACTIVE = "zone-active"
 CHECKED_FOR_S = 3_600
@@ -41,7 +41,7 @@ def suggest_for_zones() -> list[ReplanOffer]:
         if cache.get(checked_at):
             continue
         loaded = mission_of_organisation(mission.organisation, mission.pk)
-        for rest in rests_of(loaded, Cause(ZONE_ACTIVE), now):
+        for rest in rests_of(loaded, OfferCause(ZONE_ACTIVE), now):
             met = None if rest.is_out else zone_ahead(rest, now)
             if met is None:
                 continue

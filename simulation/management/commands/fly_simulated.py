@@ -15,9 +15,8 @@ from django.core.management.base import BaseCommand, CommandError
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.plant import FlatGround
-from simulation.vehicle_endpoint.fleet import MAX_SPEED, MIN_SPEED, Fleet, InvalidSpeed
+from simulation.vehicle_endpoint.fleet import MAX_SPEED, MIN_SPEED, InvalidSpeed, SimulatedFleet, WrongOrder, change_of, weather_of
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row
-from simulation.vehicle_endpoint.orders import WrongOrder, change_of, weather_of
 from simulation.vehicle_endpoint.radio import InvalidStationAddress, address_of
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
@@ -87,7 +86,7 @@ class Command(BaseCommand):
         fleet.close()
         self.stdout.write(json.dumps(asdict(report)))
 
-    def _take_orders(self, fleet: Fleet) -> None:
+    def _take_orders(self, fleet: SimulatedFleet) -> None:
         for line in sys.stdin:
             if not line.strip():
                 continue

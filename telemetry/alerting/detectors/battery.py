@@ -17,9 +17,9 @@ from telemetry.alerting.advice import (
     own_act,
 )
 from telemetry.alerting.battery_forecast import BatteryForecast, battery_forecast
+from telemetry.alerting.detection import ACTS, CRITICAL, LAND, RANK, RETURN, WARNING, Detection, acts
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import ACTS, CRITICAL, LAND, RANK, RETURN, WARNING, Finding, acts
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.status_texts import is_worse, newest_battery_text
 
@@ -50,8 +50,8 @@ class _Judged:
     is_route_short: bool = False
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
-    """Return the worse of two findings: by the vehicle's own report, which may rest on voltage, and by the percentage left."""
+def detect(inputs: DetectorInput) -> list[Detection] | None:
+    """Return the worse of two detections: by the vehicle's own report, which may rest on voltage, and by the percentage left."""
     newest = inputs.uav.newest
     inputs.detector_state.note_mode(inputs.mode, inputs.now_s if newest is None else newest.measured_s)
     forecast = _forecast(inputs)
@@ -60,7 +60,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     inputs.detector_state.battery = None if forecast is None else forecast.as_json(expected[0].level if expected else "")
     if stated is None or (expected and RANK[expected[0].level] >= RANK[stated.level]):
         return expected
-    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | _answer(inputs, forecast))]
+    return [Detection(CODE, stated.level, stated.message, stated.values, details=stated.details | _answer(inputs, forecast))]
 
 
 def _forecast(inputs: DetectorInput) -> BatteryForecast | None:
@@ -71,7 +71,7 @@ def _forecast(inputs: DetectorInput) -> BatteryForecast | None:
     return battery_forecast(inputs, fresh, left_percent)
 
 
-def _stated(inputs: DetectorInput) -> Finding | None:
+def _stated(inputs: DetectorInput) -> Detection | None:
     state, text = inputs.link.battery_state, newest_battery_text(inputs.status_texts, inputs.now_s)
     if text is not None and state == "ok" and inputs.now_s - text.at_s > OVERRULES_AFTER_S:
         text = None
@@ -81,12 +81,12 @@ def _stated(inputs: DetectorInput) -> Finding | None:
     values = {"uav": inputs.uav.name, "state": named}
     details = {"charge_state": state, "words": "" if text is None else text.text}
     if text is None:
-        return Finding(CODE, STATES[named], STATED, values, details=details)
+        return Detection(CODE, STATES[named], STATED, values, details=details)
     level = CRITICAL if is_worse(text) else STATES[named]
-    return Finding(CODE, level, STATED_AS, values | {"words": text.text}, details=details)
+    return Detection(CODE, level, STATED_AS, values | {"words": text.text}, details=details)
 
 
-def _expected(inputs: DetectorInput, forecast: BatteryForecast) -> list[Finding]:
+def _expected(inputs: DetectorInput, forecast: BatteryForecast) -> list[Detection]:
     judged = _judged(inputs, forecast)
     if judged is None:
         return []
@@ -106,11 +106,11 @@ def _expected(inputs: DetectorInput, forecast: BatteryForecast) -> list[Finding]
         "rate": round(inputs.detector_state.drain.ratio(inputs.detector_state.drain.kind), 2),
         "route_short": judged.is_route_short,
     }
-    return [Finding(CODE, judged.level, judged.message, values, details=details, severity=-forecast.left_percent)]
+    return [Detection(CODE, judged.level, judged.message, values, details=details, severity=-forecast.left_percent)]
 
 
 def _judged(inputs: DetectorInput, forecast: BatteryForecast) -> _Judged | None:
-    """Return the worst finding by the forecast. An open alert stays until all values are CLEARS_ABOVE_PERCENT above the thresholds."""
+    """Return the worst detection by the forecast. An open alert stays until all values are CLEARS_ABOVE_PERCENT above the thresholds."""
     worst = _worst(inputs, forecast, 0.0)
     if worst is not None or not inputs.is_open(CODE):
         return worst

@@ -3,9 +3,9 @@
 from typing import Any
 
 from telemetry.alerting.conflicts import FAR_HEIGHT_M, FAR_M
+from telemetry.alerting.detection import ACTS, CRITICAL, HOLD, WARNING, Detection, acts
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, WARNING, Finding, acts
 from telemetry.alerting.surroundings import Conflict
 
 CODE = "converging"
@@ -18,9 +18,9 @@ CLEAR_SHARE = 1.3
 CRITICAL_WITHIN_S = 12.0
 
 
-def detect(inputs: DetectorInput) -> list[Finding]:
+def detect(inputs: DetectorInput) -> list[Detection]:
     limits = inputs.limits
-    found: dict[str, Finding] = {}
+    found: dict[str, Detection] = {}
     for conflict in inputs.conflicts:
         subject = str(conflict.other_id)
         share = CLEAR_SHARE if inputs.is_open(CODE, subject) else 1.0
@@ -31,12 +31,12 @@ def detect(inputs: DetectorInput) -> list[Finding]:
         level = CRITICAL if is_near and conflict.in_s <= CRITICAL_WITHIN_S else WARNING
         if subject in found and (level == WARNING or found[subject].level == CRITICAL):
             continue
-        found[subject] = _finding(inputs, conflict, level)
+        found[subject] = _detection(inputs, conflict, level)
     return list(found.values())
 
 
-def _finding(inputs: DetectorInput, conflict: Conflict, level: str) -> Finding:
-    """Return the finding with the distance at this moment, regardless of its bound."""
+def _detection(inputs: DetectorInput, conflict: Conflict, level: str) -> Detection:
+    """Return the detection with the distance at this moment, regardless of its bound."""
     in_s = conflict.in_s / inputs.link.clock_rate  # server seconds, as users see them
     values: dict[str, Any] = {
         "uav": inputs.uav.name, "other": conflict.other_name, "metres": round(conflict.now_lateral_m),
@@ -55,7 +55,7 @@ def _finding(inputs: DetectorInput, conflict: Conflict, level: str) -> Finding:
     }  # fmt: skip
     nearness = -max(conflict.now_lateral_m / FAR_M, (conflict.now_height_m or 0.0) / FAR_HEIGHT_M)
     words = WORDS if is_ahead else NOW
-    return Finding(CODE, level, words, values, subject=str(conflict.other_id), details=details, severity=nearness)
+    return Detection(CODE, level, words, values, subject=str(conflict.other_id), details=details, severity=nearness)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=5.0)

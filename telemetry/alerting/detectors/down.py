@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterable
 
 from inspection.geodesy import LonLat
+from telemetry.alerting.detection import CRITICAL, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import DetectorState, position_of
-from telemetry.alerting.finding import CRITICAL, Finding
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import IssuedOrder
 
@@ -22,12 +22,12 @@ FELL_WITHIN_S = 10.0  # before it was on the ground
 GIVEN_AFTER_S = 2.0  # tolerance between clocks and reports
 
 
-def detect(inputs: DetectorInput) -> Iterable[Finding] | None:
-    """Return the finding; None without one, so that an open alert stays open."""
+def detect(inputs: DetectorInput) -> Iterable[Detection] | None:
+    """Return the detection; None without one, so that an open alert stays open."""
     if inputs.is_accounted_for:
         return None
     away = _away(inputs)
-    return None if away is None else [finding(inputs.uav.name, inputs.uav.flight, *away)]
+    return None if away is None else [detection(inputs.uav.name, inputs.uav.flight, *away)]
 
 
 def is_down_away(inputs: DetectorInput) -> bool:
@@ -62,10 +62,10 @@ def _away(inputs: DetectorInput) -> tuple[LonLat, float] | None:
     return None if away_m < AWAY_M else (position, away_m)
 
 
-def finding(name: str, flight: int, position: LonLat, away_m: float) -> Finding:
+def detection(name: str, flight: int, position: LonLat, away_m: float) -> Detection:
     values = {"uav": name, "metres": round(away_m), "place": degrees_text(position)}
     details = {"position": [position.lon, position.lat], "away_m": round(away_m, 1), "flight": flight}
-    return Finding(CODE, CRITICAL, WORDS, values, subject=str(flight), details=details)
+    return Detection(CODE, CRITICAL, WORDS, values, subject=str(flight), details=details)
 
 
 def degrees_text(position: LonLat) -> str:

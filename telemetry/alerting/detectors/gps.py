@@ -3,10 +3,10 @@
 import math
 
 from inspection.geodesy import LonLat
+from telemetry.alerting.detection import ACTS, CRITICAL, HOLD, LAND, TAKE_OVER, WARNING, Detection, acts
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import position_of
-from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, LAND, TAKE_OVER, WARNING, Finding, acts
 from telemetry.estimation.report import Report
 
 CODE = "gps"
@@ -28,7 +28,7 @@ JUMP_LASTS_S = 6.0
 BETWEEN_S = 5.0  # reports farther apart show no jump: a UAV may have flown the distance
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     fresh, limits = inputs.fresh, inputs.limits
     if fresh is None:
         return None
@@ -59,7 +59,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
         "hdop": reported.hdop,
         "jump_m": jump_m and round(jump_m),
     }
-    return [Finding(CODE, level, words, {"uav": inputs.uav.name, **values}, details=details)]
+    return [Detection(CODE, level, words, {"uav": inputs.uav.name, **values}, details=details)]
 
 
 def _jump_m(inputs: DetectorInput, fresh: Report) -> float | None:

@@ -1,8 +1,8 @@
 """Detects a UAV that flies its mission higher or lower than approved."""
 
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 
 CODE = "height-off"
 ABOVE = "%(uav)s flies %(metres)s m above the height of its route; %(limit)s m are allowed."
@@ -10,7 +10,7 @@ BELOW = "%(uav)s flies %(metres)s m below the height of its route; %(limit)s m a
 CLEAR_SHARE = 0.8
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     if not inputs.flies_mission:
         return []
     place, fresh, model, limits = inputs.place, inputs.fresh, inputs.model, inputs.limits
@@ -28,7 +28,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     level = CRITICAL if off_m > limits.height_off_critical_m else WARNING
     values = {"uav": inputs.uav.name, "metres": round(off_m), "limit": round(limits.height_off_m)}
     details = {"altitude_relative_m": round(height_m, 1), "planned_from_m": round(low_m, 1), "planned_to_m": round(high_m, 1)}
-    return [Finding(CODE, level, ABOVE if height_m > high_m else BELOW, values, details=details)]
+    return [Detection(CODE, level, ABOVE if height_m > high_m else BELOW, values, details=details)]
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=5.0)

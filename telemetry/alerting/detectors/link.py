@@ -16,9 +16,9 @@ from telemetry.alerting.advice import (
     WAS_RETURNING,
     advice,
 )
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.limits import AlertLimits
 from telemetry.alerting.modes import ModeKind
 
@@ -37,7 +37,7 @@ def lost_after_s(limits: AlertLimits, report_interval_s: float) -> float:
     return max(limits.link_lost_s, LOST_INTERVALS * report_interval_s)
 
 
-def detect(inputs: DetectorInput) -> list[Finding]:
+def detect(inputs: DetectorInput) -> list[Detection]:
     last_message_s = inputs.last_message_s
     if last_message_s is None:
         return []
@@ -47,7 +47,7 @@ def detect(inputs: DetectorInput) -> list[Finding]:
     is_lost = silent_s >= lost_after_s(inputs.limits, interval_s)
     expected_s = None if inputs.uav.estimate is None else inputs.uav.estimate.contact_expected_s
     return [
-        Finding(
+        Detection(
             CODE,
             CRITICAL if is_lost else WARNING,
             LOST if is_lost else LATE,

@@ -1,8 +1,8 @@
 """Detects a mode that was not commanded from here: an action of the autopilot, a pilot or another ground station."""
 
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import LEADS_TO, WITHOUT_ORDER, ModeKind
 from telemetry.alerting.status_texts import AFTER_S, BEFORE_S, quoted
 
@@ -28,7 +28,7 @@ _TEXTS = {
 }  # fmt: skip
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     kind, order, newest = inputs.mode, inputs.order, inputs.uav.newest
     if kind is None or newest is None:
         return None
@@ -47,7 +47,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     words = _words_about(inputs, mode)
     if words:
         template, values = _TEXTS[template], values | {"words": words}
-    return [Finding(CODE, level, template, values, details=details)]
+    return [Detection(CODE, level, template, values, details=details)]
 
 
 def _words_about(inputs: DetectorInput, mode: str) -> str:

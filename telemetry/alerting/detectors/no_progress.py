@@ -1,9 +1,9 @@
 """Detects a UAV that should fly its mission but makes no progress."""
 
+from telemetry.alerting.detection import WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import RouteProgress
-from telemetry.alerting.finding import WARNING, Finding
 
 CODE = "no-progress"
 WORDS = "%(uav)s flies its route, but has not come on for %(seconds)s s."
@@ -13,7 +13,7 @@ AT_END_M = 15.0
 SLACK = 1.2  # factor on a planned stay, which autopilots round up
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     detector_state, place, model, fresh = inputs.detector_state, inputs.place, inputs.model, inputs.fresh
     if not inputs.flies_mission or not inputs.is_in_flight:
         detector_state.progress.clear()
@@ -34,7 +34,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     if model.line.length_m - place.along_m <= AT_END_M:
         return []
     values = {"uav": inputs.uav.name, "seconds": round(stood_s)}
-    return [Finding(CODE, WARNING, WORDS, values, details={"stood_s": round(stood_s), "along_m": round(place.along_m, 1)})]
+    return [Detection(CODE, WARNING, WORDS, values, details={"stood_s": round(stood_s), "along_m": round(place.along_m, 1)})]
 
 
 def _has_climbed(before_m: float | None, height_m: float | None) -> bool:

@@ -2,10 +2,10 @@
 
 import math
 
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import position_of
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.route_line import RoutePlace
 
 CODE = "off-route"
@@ -15,7 +15,7 @@ CLEAR_SHARE = 0.8  # of the limit, to clear
 WARNING_SHARE, CRITICAL_SHARE = 1 / 3, 1 / 2  # of the clearance on legs through photos
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     if not inputs.flies_mission:
         return []
     place, limits = inputs.place, inputs.limits
@@ -31,7 +31,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
         return []
     level = CRITICAL if off_m > critical_m else WARNING
     values = {"uav": inputs.uav.name, "metres": math.ceil(off_m), "limit": math.floor(warning_m)}
-    return [Finding(CODE, level, words, values, details={"across_m": round(place.across_m, 1), "along_m": round(place.along_m, 1)})]
+    return [Detection(CODE, level, words, values, details={"across_m": round(place.across_m, 1), "along_m": round(place.along_m, 1)})]
 
 
 def _away_m(inputs: DetectorInput, place: RoutePlace) -> float:

@@ -1,8 +1,8 @@
 """Detects a UAV that holds or flies a mission other than the approved one."""
 
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import ModeKind
 
 CODE = "other-mission"
@@ -12,7 +12,7 @@ IN_DOUBT = "%(uav)s may hold another mission than the approved one: it changed a
 BEYOND = "%(uav)s is at item %(item)s of its mission; the approved one has %(items)s."
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     held, newest = inputs.held, inputs.uav.newest
     if held is None or held.is_changing:
         return None
@@ -30,7 +30,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     else:
         return []
     details = {"doubt": held.doubt, "loaded_approval": None if held.approval_id is None else str(held.approval_id)}
-    return [Finding(CODE, level, words, {"uav": inputs.uav.name, **values}, details=details)]
+    return [Detection(CODE, level, words, {"uav": inputs.uav.name, **values}, details=details)]
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=2.0, needs_flight=False, suppressed_by=("mission-mixed",))

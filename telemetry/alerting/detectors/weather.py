@@ -3,16 +3,16 @@
 import math
 
 from mavlink.decoding.measurement import Measurement
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 
 CODE = "weather"
 WORDS = "Wind %(wind)s m/s at %(uav)s (limit %(limit)s m/s)."
 CLEAR_SHARE = 0.85
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     fresh, limits, model = inputs.fresh, inputs.limits, inputs.model
     wind_mps = None if fresh is None else wind_of(fresh.measurement)
     if wind_mps is None:
@@ -23,7 +23,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
         return []
     level = CRITICAL if wind_mps >= airspeed_mps else WARNING
     values = {"uav": inputs.uav.name, "wind": f"{wind_mps:.0f}", "limit": f"{limit_mps:.0f}"}
-    return [Finding(CODE, level, WORDS, values, details={"wind_mps": round(wind_mps, 1), "limit_mps": round(limit_mps, 1)})]
+    return [Detection(CODE, level, WORDS, values, details={"wind_mps": round(wind_mps, 1), "limit_mps": round(limit_mps, 1)})]
 
 
 def wind_of(reported: Measurement) -> float | None:

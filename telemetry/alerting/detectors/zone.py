@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import shapely
 
 from inspection.geodesy import LonLat
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import position_of
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import NearZone
 
@@ -20,7 +20,7 @@ STEPS = 10  # of the prediction
 SLOW_MPS = 0.5
 
 
-def detect(inputs: DetectorInput) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Detection] | None:
     if inputs.fresh is None:
         return None
     position = position_of(inputs.fresh)
@@ -35,20 +35,20 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     found = []
     for zone in inputs.zones:
         if zone.applies_at(inputs.now_s) and zone.reaches(agl_m, agl_m) and zone.polygon.intersects(point):
-            found.append(_finding(inputs, zone, 0.0))
+            found.append(_detection(inputs, zone, 0.0))
             continue
         if not zone.reaches(low_m, high_m):
             continue
         in_s = min((seconds for way in ways if (seconds := _reached_in_s(way, zone, inputs)) is not None), default=None)
         if in_s is not None:
-            found.append(_finding(inputs, zone, in_s))
+            found.append(_detection(inputs, zone, in_s))
     return found
 
 
-def _finding(inputs: DetectorInput, zone: NearZone, in_s: float) -> Finding:
+def _detection(inputs: DetectorInput, zone: NearZone, in_s: float) -> Detection:
     values = {"uav": inputs.uav.name, "zone": zone.name} | ({"seconds": round(in_s)} if in_s > 0.0 else {})
     details = {"zone": zone.zone_id, "in_s": round(in_s, 1)}
-    return Finding(
+    return Detection(
         CODE, WARNING if in_s > 0.0 else CRITICAL, AHEAD if in_s > 0.0 else INSIDE, values, subject=str(zone.zone_id), details=details
     )
 

@@ -1,4 +1,4 @@
-"""Converts detector findings to alerts, which are opened, raised and closed in bulk."""
+"""Converts detector detections to alerts, which are opened, raised and closed in bulk."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -10,9 +10,8 @@ from mavlink.autopilot_type import AutopilotType
 from telemetry.alerting.conflicts import conflicts, elsewhere, ways_of
 from telemetry.alerting.detector_input import DetectorInput, WatchedUav
 from telemetry.alerting.detector_state import DetectorState, position_of
-from telemetry.alerting.detectors import down
+from telemetry.alerting.detectors import CODES, DETECTORS, down
 from telemetry.alerting.limits import AlertLimits, sound_limits
-from telemetry.alerting.order import CODES, DETECTORS
 from telemetry.alerting.state_machine import Closed, Opened, changes
 from telemetry.alerting.surroundings import LinkFacts, NearZone, OnboardState
 from telemetry.selectors.alert_facts import (
@@ -25,10 +24,10 @@ from telemetry.selectors.alert_facts import (
     status_texts_of,
 )
 from telemetry.selectors.alerts import MIXED, OTHER_LIST, OpenRow, open_alerts_of
-from telemetry.services.alerts.approved_flights import approved_content, flight_model
 from telemetry.services.alerts.nearby_zones import ZonesAbout, zones_about
-from telemetry.services.alerts.replan_hooks import suggest_for_findings, withdraw_for_closed
+from telemetry.services.alerts.replan_hooks import suggest_for_detections, withdraw_for_closed
 from telemetry.services.alerts.rows import close_alerts_of_ended_missions, settle
+from telemetry.services.approved_flights import approved_content, flight_model
 from telemetry.services.flown import note_down_off_plan
 from workspace.live.changes import publish_live
 
@@ -71,8 +70,8 @@ def poll_alerts(
         reported |= settle(found, open_rows=open_rows, now=now)
         batteries = {inputs.uav.uav_id: inputs.detector_state.battery if inputs.is_in_flight else None for inputs in situations}
         _end_flights(situations)
-        suggest_for_findings(
-            (uav.mission_id, uav.uav_id, change.finding)
+        suggest_for_detections(
+            (uav.mission_id, uav.uav_id, change.detection)
             for uav, change in found
             if isinstance(change, Opened) and _is_new(change, open_rows.get(uav.uav_id, ()))
         )
@@ -105,9 +104,9 @@ def _with_accounts(situations: list[DetectorInput]) -> list[DetectorInput]:
 
 def _is_new(change: Opened, rows: Iterable[OpenRow]) -> bool:
     """Return whether the alert is new, worse, or has another message. rows: open alerts of its UAV."""
-    finding = change.finding
-    row = next((row for row in rows if (row.code, row.subject) == (finding.code, finding.subject)), None)
-    return row is None or row.level != finding.level or (row.message != finding.message and not change.is_held)
+    detection = change.detection
+    row = next((row for row in rows if (row.code, row.subject) == (detection.code, detection.subject)), None)
+    return row is None or row.level != detection.level or (row.message != detection.message and not change.is_held)
 
 
 def _situations(

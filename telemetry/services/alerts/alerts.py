@@ -9,7 +9,7 @@ from django.db.models import Exists, F, OuterRef, Q
 from django.utils import timezone
 
 from missions.models import Mission, Uav
-from telemetry.alerting.finding import RANK
+from telemetry.alerting.detection import RANK
 from telemetry.alerting.state_machine import CLEARED
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alerts import waiting_to_be_seen

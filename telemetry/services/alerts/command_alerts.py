@@ -1,6 +1,6 @@
-"""Alerts of failed commands that left a UAV without its next route or its return. They last until another command is given."""
+"""Alerts of commands that failed and left a UAV without its next route or its return, and of vehicles with an unapproved mission."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from missions.command_rules import ALONG_ROUTE
@@ -8,9 +8,11 @@ from missions.hooks.in_air import uavs_on_the_ground
 from missions.models import CommandKind, UavCommand
 from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.staggered_returns import stuck_returns
-from telemetry.alerting.finding import ACTS, RETURN, acts
+from operation.reasons import Reason
+from telemetry.alerting.detection import ACTS, RETURN, acts
 from telemetry.models import Alert, AlertLevel
-from telemetry.selectors.alert_words import outcome_values
+from telemetry.selectors.alert_words import outcome_values, why_values
+from telemetry.selectors.alerts import MIXED, OTHER_LIST
 from telemetry.services.alerts.alerts import close_alert, open_alert
 
 HAND_OVER_FAILED, RETURN_NOT_BEGUN = "hand-over-failed", "return-not-begun"
@@ -22,6 +24,8 @@ HEIGHT_NOT_SET = "No return was sent to %(uav)s, which goes on as before: its re
 NOT_HELD = "No return was sent to %(uav)s, which goes on as before: it was to hold first. %(words)s"
 NOT_ALONG = "%(uav)s does not return along its route, and goes on as before. %(words)s"
 NOT_DONE = "%(uav)s was told to return, and does not. %(words)s"
+IS_MIXED = "%(uav)s holds a mix of missions. %(words)s"
+HOLDS_OTHER = "%(uav)s was not started: another list than the approved one is on board. %(words)s"
 
 
 def settle_command_alerts() -> None:
@@ -56,3 +60,25 @@ def _return_message(command: UavCommand) -> str:
     if command.parameters.get(ALONG_ROUTE):
         return NOT_ALONG
     return {CommandKind.HOLD: NOT_HELD, CommandKind.SET_RETURN_HEIGHT: HEIGHT_NOT_SET}.get(CommandKind(command.kind), NOT_DONE)
+
+
+def raise_mission_mismatch(command: UavCommand, *, is_mixed: bool, why: Sequence[Reason]) -> None:
+    """Open or close the alert, after an upload or during it."""
+    if not is_mixed:
+        close_alert(uav=command.uav, code=MIXED)
+        return
+    open_alert(
+        uav=command.uav, level=AlertLevel.CRITICAL, code=MIXED, message=IS_MIXED, values={"uav": command.uav.name, **why_values(why)},
+        mission=command.mission, details={"command": str(command.pk)},
+    )  # fmt: skip
+
+
+def raise_other_list(command: UavCommand, why: Sequence[Reason] = ()) -> None:
+    """Open the alert after a readback before a start or resume; without reasons the list is the approved one, and the alert is closed."""
+    if not why:
+        close_alert(uav=command.uav, code=OTHER_LIST)
+        return
+    open_alert(
+        uav=command.uav, level=AlertLevel.CRITICAL, code=OTHER_LIST, message=HOLDS_OTHER, mission=command.mission,
+        values={"uav": command.uav.name, **why_values(why)}, details={"command": str(command.pk)},
+    )  # fmt: skip

@@ -11,7 +11,7 @@ from telemetry.alerting.detectors import down
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alerts import BY_PERSON
 from telemetry.services.alerts.alerts import CLOSED, alert_was_closed, note_alert, open_alert, step
-from telemetry.services.alerts.approved_flights import flight_model
+from telemetry.services.approved_flights import flight_model
 from workspace.models import User
 
 
@@ -25,7 +25,7 @@ def raise_failed_flight(*, uav_id: int, approval_id: UUID, flight: int) -> None:
     position = LonLat(*uav.location.coords[:2])
     if model is None or (away_m := down.away_from_plan_m(model.line, position, model.rally_points)) < down.AWAY_M:
         return
-    found = down.finding(uav.name, flight, position, away_m)
+    found = down.detection(uav.name, flight, position, away_m)
     open_alert(
         uav=uav, level=AlertLevel(found.level), code=found.code, message=found.message, values=found.values, details=found.details,
         mission=Approval.objects.select_related("mission").get(pk=approval_id).mission, subject=found.subject,

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from uuid import UUID
 
 from missions.services.replanning import suggest, withdraw
+from telemetry.alerting.detection import CRITICAL, Detection
 from telemetry.alerting.detectors import battery, down, link, mode_changed
-from telemetry.alerting.finding import CRITICAL, Finding
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.state_machine import CLEARED, Closed
 from telemetry.models import Alert
@@ -18,12 +18,12 @@ CODES_OF = {link.CODE: UAV_OUT, mode_changed.CODE: UAV_OUT, battery.CODE: BATTER
 COMES_DOWN = frozenset({ModeKind.RETURN, ModeKind.LAND})
 
 
-def suggest_for_findings(findings: Iterable[tuple[UUID, int, Finding]]) -> None:
-    """Offer a new plan for findings, given as mission, UAV and finding; once for each cause. Idempotent."""
-    for mission_id, uav_id, finding in findings:
-        code = code_of(finding)
+def suggest_for_detections(detections: Iterable[tuple[UUID, int, Detection]]) -> None:
+    """Offer a new plan for detections, given as mission, UAV and detection; once for each cause. Idempotent."""
+    for mission_id, uav_id, detection in detections:
+        code = code_of(detection)
         if code is not None:
-            suggest(mission_id=mission_id, code=code, cause={"figures": finding.values, "uav": uav_id, "alert": finding.code})
+            suggest(mission_id=mission_id, code=code, cause={"figures": detection.values, "uav": uav_id, "alert": detection.code})
 
 
 def withdraw_for_closed(closed: Iterable[tuple[UUID, int, Closed]]) -> None:
@@ -36,25 +36,27 @@ def withdraw_for_closed(closed: Iterable[tuple[UUID, int, Closed]]) -> None:
         if code is None or change.reason != CLEARED:
             continue
         rows = Alert.objects.filter(mission=mission_id, closed_at=None).order_by("opened_at")
-        reasons = [(row.uav_id, finding) for row in rows if row.uav_id is not None and code_of(finding := _finding_of(row)) is not None]
-        if any(uav == uav_id and code_of(finding) == code for uav, finding in reasons):
+        reasons = [
+            (row.uav_id, detection) for row in rows if row.uav_id is not None and code_of(detection := _detection_of(row)) is not None
+        ]
+        if any(uav == uav_id and code_of(detection) == code for uav, detection in reasons):
             continue
         if withdraw(mission_id=mission_id, code=code, uav_id=uav_id):  # it had replaced an offer for another UAV
-            suggest_for_findings((mission_id, uav, finding) for uav, finding in reasons if uav != uav_id)
+            suggest_for_detections((mission_id, uav, detection) for uav, detection in reasons if uav != uav_id)
 
 
-def _finding_of(alert: Alert) -> Finding:
-    return Finding(alert.code, alert.level, alert.message, alert.values, alert.subject, alert.details)
+def _detection_of(alert: Alert) -> Detection:
+    return Detection(alert.code, alert.level, alert.message, alert.values, alert.subject, alert.details)
 
 
-def code_of(finding: Finding) -> str | None:
-    """Return the code of the offer for a finding; None: no offer."""
-    if finding.code == battery.CODE and (finding.level == CRITICAL or finding.details.get("route_short")):
+def code_of(detection: Detection) -> str | None:
+    """Return the code of the offer for a detection; None: no offer."""
+    if detection.code == battery.CODE and (detection.level == CRITICAL or detection.details.get("route_short")):
         return BATTERY_SHORT
-    if finding.code == link.CODE and finding.level == CRITICAL:
+    if detection.code == link.CODE and detection.level == CRITICAL:
         return UAV_OUT
-    if finding.code == down.CODE:
+    if detection.code == down.CODE:
         return UAV_OUT
-    if finding.code == mode_changed.CODE and mode_kind(str(finding.details.get("mode") or "")) in COMES_DOWN:
+    if detection.code == mode_changed.CODE and mode_kind(str(detection.details.get("mode") or "")) in COMES_DOWN:
         return UAV_OUT
     return None

@@ -11,9 +11,9 @@ from django.db.models.functions import Now
 
 from missions.models import MissionState
 from telemetry.alerting.advice import answer_of, figures_of
+from telemetry.alerting.detection import RANK, Detection
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import down
-from telemetry.alerting.finding import RANK, Finding
 from telemetry.alerting.state_machine import Closed, Opened
 from telemetry.models import Alert
 from telemetry.selectors.alerts import WORST, OpenRow
@@ -54,22 +54,23 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
                 closed.append((row.id, change.reason))
                 organisations.add(uav.organisation_id)
             continue
-        finding = change.finding
-        row = rows.get((uav.uav_id, finding.code, finding.subject))
+        detection = change.detection
+        row = rows.get((uav.uav_id, detection.code, detection.subject))
         if row is None:
             new.append(
                 Alert(
-                    organisation_id=uav.organisation_id, uav_id=uav.uav_id, mission_id=uav.mission_id, level=finding.level,
-                    code=finding.code, subject=finding.subject, message=finding.message, values=finding.values,
-                    details=_with_worst(finding, None, now), opened_at=now, written_at=now, course=[step(OPENED, now, level=finding.level)],
+                    organisation_id=uav.organisation_id, uav_id=uav.uav_id, mission_id=uav.mission_id, level=detection.level,
+                    code=detection.code, subject=detection.subject, message=detection.message, values=detection.values,
+                    details=_with_worst(detection, None, now), opened_at=now, written_at=now,
+                    course=[step(OPENED, now, level=detection.level)],
                 )
             )  # fmt: skip
             organisations.add(uav.organisation_id)
         elif (written := _words_to_write(row, change, now)) is not None:
-            is_raised = RANK[finding.level] > RANK[row.level]
-            details = json.dumps(_with_worst(finding, row.worst, now))
+            is_raised = RANK[detection.level] > RANK[row.level]
+            details = json.dumps(_with_worst(detection, row.worst, now))
             message, values = written
-            renewed.append((row.id, finding.level, message, json.dumps(values), details, is_raised))
+            renewed.append((row.id, detection.level, message, json.dumps(values), details, is_raised))
             organisations.add(uav.organisation_id)
     if not organisations:
         return organisations
@@ -100,35 +101,35 @@ def _close(ids: Sequence[int], reason: str, now: datetime) -> None:
         cursor.execute(_CLOSE, [now, reason, json.dumps([step(CLOSED, now, reason=reason)]), list(ids)])
 
 
-def is_worse(finding: Finding, worst: Mapping[str, Any] | None) -> bool:
-    """Return whether the finding is worse than the worst one stored with its alert."""
-    return worst is None or (RANK[finding.level], finding.severity) > (RANK[worst["level"]], worst["severity"])
+def is_worse(detection: Detection, worst: Mapping[str, Any] | None) -> bool:
+    """Return whether the detection is worse than the worst one stored with its alert."""
+    return worst is None or (RANK[detection.level], detection.severity) > (RANK[worst["level"]], worst["severity"])
 
 
-def _with_worst(finding: Finding, worst: Mapping[str, Any] | None, now: datetime) -> dict[str, Any]:
+def _with_worst(detection: Detection, worst: Mapping[str, Any] | None, now: datetime) -> dict[str, Any]:
     """Return the details of an alert with its worst message so far; without one for causes whose values cannot be compared."""
-    if finding.severity == 0.0:
-        return finding.details
-    if is_worse(finding, worst):
+    if detection.severity == 0.0:
+        return detection.details
+    if is_worse(detection, worst):
         worst = {
-            "level": finding.level, "severity": finding.severity, "message": finding.message, "values": finding.values,
+            "level": detection.level, "severity": detection.severity, "message": detection.message, "values": detection.values,
             "at": now.isoformat(),
         }  # fmt: skip
-    return finding.details | {WORST: worst}
+    return detection.details | {WORST: worst}
 
 
 def _words_to_write(row: OpenRow, change: Opened, now: datetime) -> tuple[str, Mapping[str, Any]] | None:
-    """Return message and values to write to an open alert, with the finding's details; None: nothing to write.
+    """Return message and values to write to an open alert, with the detection's details; None: nothing to write.
 
     An alert that keeps a worse level keeps that level's message. Its acts are always the present ones.
     """
-    finding = change.finding
-    is_answered_otherwise = answer_of(finding.details) != row.answer
+    detection = change.detection
+    is_answered_otherwise = answer_of(detection.details) != row.answer
     is_due = now - row.written_at >= WORDS_STAND_FOR
-    has_other_figures = figures_of(finding.details) != row.figures
-    if change.is_held and finding.message != row.message:
+    has_other_figures = figures_of(detection.details) != row.figures
+    if change.is_held and detection.message != row.message:
         return (row.message, row.values) if is_answered_otherwise or (has_other_figures and is_due) else None
-    is_other = is_answered_otherwise or finding.level != row.level or finding.message != row.message
-    has_changed = finding.values != row.values or has_other_figures
-    is_worst = finding.severity != 0.0 and is_worse(finding, row.worst)
-    return (finding.message, finding.values) if is_other or (has_changed and (is_worst or is_due)) else None
+    is_other = is_answered_otherwise or detection.level != row.level or detection.message != row.message
+    has_changed = detection.values != row.values or has_other_figures
+    is_worst = detection.severity != 0.0 and is_worse(detection, row.worst)
+    return (detection.message, detection.values) if is_other or (has_changed and (is_worst or is_due)) else None

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from inspection.importers.gdal_process import GdalRefusal, Limits, gdal_process
+from inspection.importers.gdal_process import GdalLimits, GdalRefusal, gdal_process
 from tests.inspection.importers.assets.gdal_files import gml, gml_member, gml_point
 from tests.runaway import processor_s
 
@@ -57,8 +57,11 @@ def test_a_child_that_does_not_end_is_ended_after_its_processor_time() -> None:
     assert processor_s() - began_s < 2.0
 
 
-def answers(driver: str, path: Path, limits: Limits | None = None) -> list[object]:
-    with path.open("rb") as file, gdal_process(driver, {f"file.{driver.lower()}": file}, limits or Limits(), layer="", most=10) as process:
+def answers(driver: str, path: Path, limits: GdalLimits | None = None) -> list[object]:
+    with (
+        path.open("rb") as file,
+        gdal_process(driver, {f"file.{driver.lower()}": file}, limits or GdalLimits(), layer="", most=10) as process,
+    ):
         found = [process.line()]
         while not (isinstance(found[-1], dict) and "features" in found[-1]):
             found.append(process.line())
@@ -103,7 +106,7 @@ def test_a_remote_schema_and_remote_members_are_not_fetched(tmp_path: Path) -> N
 
 def test_a_file_that_needs_more_processor_time_or_memory_is_refused_with_the_limit(tmp_path: Path) -> None:
     path = gml(tmp_path / "a.gml", "".join(gml_member(gml_point(), f"T{number}") for number in range(300_000)))
-    limits = Limits(processor_s=1, processor_s_per_mib=0)
+    limits = GdalLimits(processor_s=1, processor_s_per_mib=0)
     with (
         pytest.raises(GdalRefusal, match="longer than 1 s"),
         path.open("rb") as file,
@@ -112,7 +115,7 @@ def test_a_file_that_needs_more_processor_time_or_memory_is_refused_with_the_lim
         while True:
             child.line()
     with pytest.raises(GdalRefusal, match="more than 150 MiB of memory"):
-        answers("GML", path, Limits(memory_mib=150))
+        answers("GML", path, GdalLimits(memory_mib=150))
 
 
 def test_a_child_that_crashes_is_a_refusal_and_leaves_nothing(tmp_path: Path) -> None:

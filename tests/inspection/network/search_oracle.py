@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.legs import Attachment, DirectLeg, NoWay
+from inspection.network.legs import Attachment, DirectLeg, NoPath
 
 ENTRIES_PER_BLOCK = 8_000_000  # sources x nodes searched at once: 100 MB
 KEPT_SEARCHES = 16  # of sources whose paths are asked for, when not all are kept
@@ -38,10 +38,10 @@ class Travel:
     _previous: Callable[[int], NDArray[np.int32]]  # for a source: the node before each node
 
     def path(self, source: int, sink: int) -> IntArray:
-        """Nodes from the source to the sink; none for a direct leg. Raises NoWay where the length is inf."""
+        """Nodes from the source to the sink; none for a direct leg. Raises NoPath where the length is inf."""
         last = int(self._last[source, sink])
         if last == NO_WAY:
-            raise NoWay(source, sink)
+            raise NoPath(source, sink)
         if last == DIRECT:
             return np.zeros(0, dtype=np.int64)
         previous = self._previous(source)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inspection.network.legs import Attachment, DirectLeg, NoWay
+from inspection.network.legs import Attachment, DirectLeg, NoPath
 from inspection.network.paths.along_paths import BEND, passed_on
 from inspection.network.paths.contracted_graph import CORE, contract
 from inspection.network.paths.paths import travel_between
@@ -52,7 +52,7 @@ def test_a_sink_in_another_component_is_out_of_reach():
     graph = drawn_graph([(0, 0), (1, 0), (5, 0), (6, 0)], [(0, 1, 100.0), (2, 3, 100.0)])
     travel = travel_between(graph, [[leg(0, 0)]], [[leg(3, 0)], []])
     assert np.isinf(travel.length_m).all()
-    with pytest.raises(NoWay):
+    with pytest.raises(NoPath):
         travel.path(0, 0)
 
 

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from inspection.importers.zones.zone_file import read_zones
-from inspection.zones.activity import DAY_S, EPOCH, SUN_ALLOWANCE_S, Span, active_spans, merged, sun_event_s
+from inspection.zones.activity import DAY_S, EPOCH, SUN_ALLOWANCE_S, TimeSpan, active_spans, merged, sun_event_s
 from inspection.zones.schedule import DAYS, EVENTS, checked_schedule
 
 COPENHAGEN = (12.5, 55.6, 12.6, 55.7)
@@ -81,7 +81,7 @@ def test_a_period_bounds_its_entries_and_without_entries_is_all_the_time() -> No
 
 
 def test_no_schedule_is_always() -> None:
-    assert active_spans(None, COPENHAGEN, 0.0, 10.0) == (Span(0.0, 10.0),)
+    assert active_spans(None, COPENHAGEN, 0.0, 10.0) == (TimeSpan(0.0, 10.0),)
     assert active_spans(None, COPENHAGEN, 10.0, 10.0) == ()
 
 
@@ -171,7 +171,7 @@ def test_where_the_sun_does_not_set_or_rise_the_zone_applies_all_day() -> None:
             {"startTime": "10:00:00Z", "endEvent": "SS"},
         ):
             found = active_spans(schedule(entry("ANY", **sides)), TROMSO, at(from_at), at(to_at))
-            assert found == (Span(at(from_at), at(to_at)),)
+            assert found == (TimeSpan(at(from_at), at(to_at)),)
 
 
 def test_sunset_may_end_what_a_time_began() -> None:

@@ -4,7 +4,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import Addressing
-from mavlink.commands.home_request import HomeReading
+from mavlink.commands.message_requests import HomeReading
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
 

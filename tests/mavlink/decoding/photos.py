@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
 from mavlink.decoding.boots import VehicleTime
-from mavlink.decoding.captures import CaptureDecoder, CaptureReport
+from mavlink.decoding.captures import CaptureDecoder, CaptureMessage
 
 NOW_S = 1_790_000_000.0
 BOOTED_S = NOW_S - 100.0
@@ -90,7 +90,7 @@ def synchronised(epoch: bool = True) -> VehicleTime:
 
 def decoded(
     *messages: Any, autopilot: AutopilotType | None = AutopilotType.ARDUPILOT, clock: VehicleTime | None = None, now_s: float = NOW_S
-) -> CaptureReport:
+) -> CaptureMessage:
     """The one photo that these messages tell of."""
     decoder = CaptureDecoder()
     reports = [decoder.receive(message, clock or synchronised(), autopilot, now_s) for message in messages]

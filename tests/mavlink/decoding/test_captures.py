@@ -8,10 +8,10 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
+from mavlink.commands.message_requests import MissingPhotos
 from mavlink.decoding.boots import VehicleTime
-from mavlink.decoding.captures import AttitudeSource, CaptureDecoder, CaptureReport, PositionSource, TimeSource, combined
+from mavlink.decoding.captures import AttitudeSource, CaptureDecoder, CaptureMessage, CaptureTimeSource, PositionSource, combined
 from mavlink.decoding.gimbal_attitude import YawFrame, attitude_of_quaternion
-from mavlink.decoding.missing_photos import MissingPhotos
 from tests.mavlink.decoding.photos import (
     BOOTED_S,
     CAMERA,
@@ -38,7 +38,7 @@ from tests.mavlink.decoding.photos import (
 PX4, ARDUPILOT = AutopilotType.PX4, AutopilotType.ARDUPILOT
 
 
-def aim(report: CaptureReport) -> tuple[float | None, float | None]:
+def aim(report: CaptureMessage) -> tuple[float | None, float | None]:
     return report.pitch_deg, report.yaw_deg
 
 
@@ -49,7 +49,7 @@ def test_photo_of_a_camera_component_has_its_pose_and_its_heights():
     assert aim(report) == (pytest.approx(-30.0, abs=1e-4), pytest.approx(200.0, abs=1e-4))
     assert (report.yaw_frame, report.attitude_source) == (YawFrame.EARTH, AttitudeSource.CAMERA)
     assert (report.image_index, report.camera, report.is_taken, report.file_url) == (4, CAMERA, True, "mftp://photo 4.jpg")
-    assert (report.taken_s, report.time_source) == (pytest.approx(NOW_S, abs=0.1), TimeSource.VEHICLE_CLOCK)
+    assert (report.taken_s, report.time_source) == (pytest.approx(NOW_S, abs=0.1), CaptureTimeSource.VEHICLE_CLOCK)
     assert report.position_bound_m == pytest.approx(2.9)
 
 
@@ -111,17 +111,17 @@ def test_photo_without_a_position_is_where_the_vehicle_was_with_a_wider_bound():
 
 
 def test_times_are_the_vehicles_where_they_can_be_and_say_so_where_not():
-    assert decoded(feedback(time_us=(NOW_S - 0.4) * 1e6)).time_source is TimeSource.VEHICLE_CLOCK
+    assert decoded(feedback(time_us=(NOW_S - 0.4) * 1e6)).time_source is CaptureTimeSource.VEHICLE_CLOCK
     boot = decoded(feedback(time_us=99.5e6))
-    assert (boot.time_source, boot.taken_s) == (TimeSource.VEHICLE_CLOCK, pytest.approx(NOW_S - 0.5, abs=0.1))
+    assert (boot.time_source, boot.taken_s) == (CaptureTimeSource.VEHICLE_CLOCK, pytest.approx(NOW_S - 0.5, abs=0.1))
     unsynchronised = decoded(feedback(time_us=(NOW_S - 0.4) * 1e6), clock=VehicleTime())
-    assert (unsynchronised.time_source, unsynchronised.taken_s) == (TimeSource.UTC, pytest.approx(NOW_S - 0.4))
+    assert (unsynchronised.time_source, unsynchronised.taken_s) == (CaptureTimeSource.UTC, pytest.approx(NOW_S - 0.4))
     wrong = decoded(captured(boot_s=4_000.0, utc_s=NOW_S - 3_600.0))
-    assert (wrong.time_source, wrong.taken_s, wrong.time_bound_s) == (TimeSource.RECEIPT, NOW_S, pytest.approx(3_600.0))
+    assert (wrong.time_source, wrong.taken_s, wrong.time_bound_s) == (CaptureTimeSource.RECEIPT, NOW_S, pytest.approx(3_600.0))
     nothing = decoded(captured(boot_s=0.0), clock=VehicleTime())
-    assert (nothing.time_source, nothing.taken_s, nothing.time_bound_s) == (TimeSource.RECEIPT, NOW_S, 5.0)
+    assert (nothing.time_source, nothing.taken_s, nothing.time_bound_s) == (CaptureTimeSource.RECEIPT, NOW_S, 5.0)
     future = decoded(captured(boot_s=4_000.0, utc_s=NOW_S + 3_600.0))
-    assert (future.time_source, future.taken_s) == (TimeSource.RECEIPT, NOW_S)
+    assert (future.time_source, future.taken_s) == (CaptureTimeSource.RECEIPT, NOW_S)
 
 
 def test_time_of_a_feedback_pin_is_read_beyond_its_32_bits():
@@ -129,15 +129,15 @@ def test_time_of_a_feedback_pin_is_read_beyond_its_32_bits():
     for step in range(5_000, 5_100):
         clock.receive(step * 1_000, NOW_S - 5_100 + step)
     report = decoded(feedback(time_us=(5_099.0 * 1e6) % 2**32), clock=clock)
-    assert (report.time_source, report.taken_s) == (TimeSource.VEHICLE_CLOCK, pytest.approx(NOW_S - 1.0, abs=0.1))
+    assert (report.time_source, report.taken_s) == (CaptureTimeSource.VEHICLE_CLOCK, pytest.approx(NOW_S - 1.0, abs=0.1))
 
 
 def test_a_cameras_photo_that_was_asked_for_again_has_its_time_once_the_camera_was_on_time():
-    for utc_s, source in ((0.0, TimeSource.VEHICLE_CLOCK), (NOW_S, TimeSource.UTC)):
+    for utc_s, source in ((0.0, CaptureTimeSource.VEHICLE_CLOCK), (NOW_S, CaptureTimeSource.UTC)):
         decoder, clock, boot_s = CaptureDecoder(), synchronised(), 100.0 if not utc_s else 9_000.0
         again = captured(3, boot_s=boot_s, utc_s=utc_s)
         unknown = decoder.receive(again, clock, PX4, NOW_S + 20.0)
-        assert unknown is not None and (unknown.time_source, unknown.taken_s) == (TimeSource.RECEIPT, NOW_S + 20.0)
+        assert unknown is not None and (unknown.time_source, unknown.taken_s) == (CaptureTimeSource.RECEIPT, NOW_S + 20.0)
         on_time = captured(4, boot_s=boot_s + 20.0, utc_s=utc_s and utc_s + 20.0)
         assert decoder.receive(on_time, clock, PX4, NOW_S + 20.2).time_source is source
         late = decoder.receive(again, clock, PX4, NOW_S + 30.0)
@@ -171,7 +171,7 @@ def test_gaps_of_indices_are_asked_for_and_a_camera_that_counts_anew_is_not():
 def test_photos_that_were_held_back_with_all_else_keep_their_time():
     clock = synchronised(epoch=False)
     report = decoded(feedback(time_us=70e6), clock=clock, now_s=NOW_S + 60.0)
-    assert (report.time_source, report.taken_s) == (TimeSource.VEHICLE_CLOCK, pytest.approx(BOOTED_S + 70.0, abs=0.2))
+    assert (report.time_source, report.taken_s) == (CaptureTimeSource.VEHICLE_CLOCK, pytest.approx(BOOTED_S + 70.0, abs=0.2))
 
 
 def test_impossible_values_are_unknown():
@@ -210,13 +210,13 @@ def test_reports_of_one_photo_are_combined_the_same_in_any_order():
     ]
     whole = combined(reports)
     assert all(combined(random.Random(seed).sample(reports, 3)) == whole for seed in range(6))
-    assert (whole.image_index, whole.attitude_source, whole.time_source) == (7, AttitudeSource.CAMERA, TimeSource.VEHICLE_CLOCK)
+    assert (whole.image_index, whole.attitude_source, whole.time_source) == (7, AttitudeSource.CAMERA, CaptureTimeSource.VEHICLE_CLOCK)
     assert (whole.longitude_deg, whole.position_source) == (10.0, PositionSource.PHOTO)
     assert whole.position_bound_m == pytest.approx(1e-4 * 111_195 * math.cos(math.radians(LAT_E7 / 1e7)), rel=0.01), (
         "they differ by so much"
     )
     assert combined([reports[0]]) == reports[0]
-    assert CaptureReport.from_json(whole.to_json()) == whole
+    assert CaptureMessage.from_json(whole.to_json()) == whole
     failed = decoded(captured(7, result=0))
     assert not combined([reports[0], failed]).is_taken
 
@@ -262,4 +262,4 @@ def test_nothing_that_comes_makes_it_fail_or_gives_impossible_values(seed: int):
         assert report.longitude_deg is None or (abs(report.longitude_deg) <= 180.0 and abs(report.latitude_deg or 0.0) <= 90.0)
         assert report.yaw_deg is None or (0.0 <= report.yaw_deg < 360.0 and report.yaw_frame is not None)
         assert NOW_S - 86_400.0 <= report.taken_s <= NOW_S
-        assert CaptureReport.from_json(report.to_json()) == report
+        assert CaptureMessage.from_json(report.to_json()) == report

@@ -5,7 +5,7 @@ import pytest
 from inspection.geodesy import LonLat
 from mavlink.approved_route import END_ACTIONS
 from mavlink.fence import fence_of, rally_items
-from mavlink.intermediate_waypoints import with_points_between
+from mavlink.legs import with_points_between
 from mavlink.mission_items import flight_loads
 from mavlink.mission_sync.outcome import SyncState
 from mavlink.mission_sync.sync import MissionSync

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat, path_length_m
 from mavlink.autopilot_type import AutopilotType
-from mavlink.intermediate_waypoints import with_points_between
+from mavlink.legs import with_points_between
 from mavlink.mission_sync.limits import count_warnings, leg_warnings, too_many
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from tests.telemetry.vehicles.loads import load, mission, polygon

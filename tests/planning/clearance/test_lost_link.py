@@ -12,7 +12,7 @@ from planning.clearance.lost_link import (
     FailedReturn,
     LostLink,
     LostLinkPlan,
-    Trouble,
+    ReturnTrouble,
     checked_returns,
 )
 from planning.clearance.surroundings import Surroundings
@@ -110,7 +110,7 @@ def test_the_battery_has_to_do_for_the_straight_way_back_and_the_landing():
     assert failed(route(0, 1, 2), performance=enough) == []
     less = Performance(battery_wh=needed_wh / 0.8 * 0.99)
     [found] = failed(route(0, 1, 2), performance=less)
-    assert (found.waypoint, found.return_point, found.trouble) == (2, 0, Trouble.BATTERY)
+    assert (found.waypoint, found.return_point, found.trouble) == (2, 0, ReturnTrouble.BATTERY)
     assert found.missing_wh == pytest.approx(0.01 * needed_wh, rel=0.05)
 
 
@@ -136,7 +136,7 @@ def test_a_rally_point_that_is_nearer_saves_the_way_home():
 def test_a_zone_on_the_straight_way_back_is_told_from_each_waypoint_beyond_it():
     zones = ZoneFacts.of([box(9, 10), box(1.2, 1.8)], [(None, "", None, "")] * 2, [None, None])
     found = failed(route(0, 1, 2, 3), zones=zones)
-    assert found == [FailedReturn(place, 0, Trouble.ZONE, zone=1) for place in (2, 3)]
+    assert found == [FailedReturn(place, 0, ReturnTrouble.ZONE, zone=1) for place in (2, 3)]
 
 
 def test_a_zone_above_the_return_is_not_met_and_one_that_cannot_be_compared_is():
@@ -163,7 +163,7 @@ def test_a_hill_between_has_to_be_cleared_below_the_greatest_height():
     waypoints = route(0, 1, 2, ground_m=400.0)
     assert failed(waypoints, ground_heights_m=ridge(50.0)) == []
     [found] = failed(waypoints, ground_heights_m=ridge(80.0))
-    assert (found.waypoint, found.trouble) == (2, Trouble.TOO_HIGH)
+    assert (found.waypoint, found.trouble) == (2, ReturnTrouble.TOO_HIGH)
     assert found.over_m == pytest.approx(20.0)
 
 
@@ -172,7 +172,7 @@ def test_ground_that_is_not_known_is_no_ground_to_fly_over():
         return np.where(position[:, 0] > 1.5 * KM_DEG, np.nan, 400.0)
 
     found = failed(route(0, 1, 2, ground_m=400.0), ground_heights_m=with_a_gap)
-    assert found == [FailedReturn(2, 0, Trouble.UNKNOWN_GROUND)]
+    assert found == [FailedReturn(2, 0, ReturnTrouble.UNKNOWN_GROUND)]
 
 
 def mast(km, beside_km, height_m):
@@ -187,7 +187,7 @@ def hung(wires):
 
 def test_a_mast_beside_the_way_counts_and_one_away_from_it_does_not():
     [found] = failed(route(0, 1, 2), spans=mast(1.5, 0.02, 130.0))
-    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(130.0 + 15.0 - 120.0))
+    assert (found.waypoint, found.trouble, found.over_m) == (2, ReturnTrouble.OBSTACLE, pytest.approx(130.0 + 15.0 - 120.0))
     assert failed(route(0, 1, 2), spans=mast(1.5, 0.2, 130.0)) == []
     assert failed(route(0, 1, 2), spans=mast(1.5, 0.02, 90.0)) == []
 
@@ -197,9 +197,9 @@ def test_a_wire_far_from_both_its_towers_is_cleared_like_a_tower():
     aloft = ZoneFacts.of([box(0.2, 0.8)], [(90.0, "AGL", None, "")], [None])
     waypoints = route(0, 1, 2)
     assert failed(waypoints, zones=aloft) == []
-    assert [one.trouble for one in failed(waypoints, zones=aloft, spans=hung([(1.5, -0.2, 90.0, 1.5, 0.2, 90.0)]))] == [Trouble.ZONE]
+    assert [one.trouble for one in failed(waypoints, zones=aloft, spans=hung([(1.5, -0.2, 90.0, 1.5, 0.2, 90.0)]))] == [ReturnTrouble.ZONE]
     [found] = failed(waypoints, spans=hung([(1.5, -0.2, 110.0, 1.5, 0.2, 110.0)]))
-    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(5.0))
+    assert (found.waypoint, found.trouble, found.over_m) == (2, ReturnTrouble.OBSTACLE, pytest.approx(5.0))
 
 
 def test_how_high_above_its_start_a_uav_returns_is_told():
@@ -227,7 +227,7 @@ def test_a_wire_hangs_from_the_ground_under_its_towers():
     wire = hung([(1.5, -0.2, 50.0, 1.5, 0.2, 50.0)])
     assert failed(waypoints, ground_heights_m=lambda position: np.full(len(position), 400.0), spans=wire) == []
     [found] = failed(waypoints, ground_heights_m=hills, spans=wire)
-    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(5.0))
+    assert (found.waypoint, found.trouble, found.over_m) == (2, ReturnTrouble.OBSTACLE, pytest.approx(5.0))
 
 
 def test_a_wire_over_ground_that_is_not_known_hangs_nobody_knows_how_high():
@@ -236,14 +236,14 @@ def test_a_wire_over_ground_that_is_not_known_hangs_nobody_knows_how_high():
 
     waypoints = route(0, 1, 2, ground_m=400.0)
     found = failed(waypoints, ground_heights_m=known_on_the_way, spans=hung([(1.5, -0.2, 20.0, 1.5, 0.2, 20.0)]))
-    assert found == [FailedReturn(2, 0, Trouble.UNKNOWN_GROUND)]
+    assert found == [FailedReturn(2, 0, ReturnTrouble.UNKNOWN_GROUND)]
 
 
 def test_against_a_wind_that_is_too_strong_nobody_comes_home():
     """Out with 10 m/s of west wind, back against it: a UAV of 10 m/s through the air has no headway."""
     wind = Conditions((WindLayer(60.0, 10.0, 270.0),))
     found = failed(route(0, 1, 2), performance=Performance(max_airspeed_mps=10.2), conditions=wind)
-    assert [(one.waypoint, one.trouble) for one in found] == [(1, Trouble.WIND), (2, Trouble.WIND)]
+    assert [(one.waypoint, one.trouble) for one in found] == [(1, ReturnTrouble.WIND), (2, ReturnTrouble.WIND)]
 
 
 def test_a_route_without_waypoints_needs_no_way_home():

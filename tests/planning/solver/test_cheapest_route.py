@@ -8,7 +8,7 @@ import pytest
 from planning.problem import End, Objective, Problem, UavStart, Visit
 from planning.solver import cheapest_route
 from planning.solver.cheapest_route import LeastRoutes
-from planning.solver.cost_matrices import Kind
+from planning.solver.cost_matrices import QuantityKind
 
 TARGETS = 5
 
@@ -37,7 +37,7 @@ def by_trying(problem: Problem, visit: int) -> float:
 @pytest.mark.parametrize("seed", range(12))
 def test_each_order_is_tried_where_there_are_few_targets(seed: int) -> None:
     problem = drawn(seed)
-    routes = LeastRoutes(problem, Kind.METRES)
+    routes = LeastRoutes(problem, QuantityKind.METRES)
     for visit in range(len(problem.visits)):
         found = routes.route(0, visit)
         assert found.amount == pytest.approx(by_trying(problem, visit))
@@ -50,7 +50,7 @@ def test_each_order_is_tried_where_there_are_few_targets(seed: int) -> None:
 def test_of_many_targets_a_route_is_found_that_is_one(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cheapest_route, "MAX_TRIED", 0)
     problem = drawn(seed)
-    routes = LeastRoutes(problem, Kind.METRES)
+    routes = LeastRoutes(problem, QuantityKind.METRES)
     for visit in range(len(problem.visits)):
         found = routes.route(0, visit)
         assert found.amount >= by_trying(problem, visit) - 1e-9

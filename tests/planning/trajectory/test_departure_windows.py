@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inspection.zones.activity import Span
+from inspection.zones.activity import TimeSpan
 from missions.selectors.zones import blocked_departures, free_between
 
 A_DAY = (0.0, 86_400.0)
@@ -11,27 +11,30 @@ A_DAY = (0.0, 86_400.0)
 
 def test_a_leg_flown_after_ten_to_twelve_minutes_bars_what_is_that_much_earlier() -> None:
     """The zone applies from 9:00 to 10:00 (32,400 s to 36,000 s)."""
-    assert blocked_departures([(600.0, 720.0)], [(32_400.0, 36_000.0)], 0.0, *A_DAY) == (Span(31_680.0, 35_400.0),)
-    assert blocked_departures([(600.0, 720.0)], [(32_400.0, 36_000.0)], 300.0, *A_DAY) == (Span(31_380.0, 35_700.0),)
+    assert blocked_departures([(600.0, 720.0)], [(32_400.0, 36_000.0)], 0.0, *A_DAY) == (TimeSpan(31_680.0, 35_400.0),)
+    assert blocked_departures([(600.0, 720.0)], [(32_400.0, 36_000.0)], 300.0, *A_DAY) == (TimeSpan(31_380.0, 35_700.0),)
 
 
 def test_two_legs_of_one_zone_bar_both_times_and_what_overlaps_is_one() -> None:
     legs = [(600.0, 720.0), (7_200.0, 7_260.0)]
-    assert blocked_departures(legs, [(32_400.0, 33_000.0)], 0.0, *A_DAY) == (Span(25_140.0, 25_800.0), Span(31_680.0, 32_400.0))
-    assert blocked_departures(legs, [(32_400.0, 39_600.0)], 0.0, *A_DAY) == (Span(25_140.0, 39_000.0),)
+    assert blocked_departures(legs, [(32_400.0, 33_000.0)], 0.0, *A_DAY) == (TimeSpan(25_140.0, 25_800.0), TimeSpan(31_680.0, 32_400.0))
+    assert blocked_departures(legs, [(32_400.0, 39_600.0)], 0.0, *A_DAY) == (TimeSpan(25_140.0, 39_000.0),)
 
 
 def test_a_zone_that_applied_before_the_first_departure_or_ends_after_the_last_is_cut_there() -> None:
     assert blocked_departures([(600.0, 720.0)], [(-9_999.0, 700.0), (86_500.0, 99_999.0)], 0.0, *A_DAY) == (
-        Span(0.0, 100.0),
-        Span(85_780.0, 86_400.0),
+        TimeSpan(0.0, 100.0),
+        TimeSpan(85_780.0, 86_400.0),
     )
 
 
 def test_what_is_free_is_what_is_left() -> None:
-    assert free_between([], 0.0, 10.0) == (Span(0.0, 10.0),)
-    assert free_between([Span(0.0, 10.0)], 0.0, 10.0) == ()
-    assert free_between([Span(8.0, 10.0), Span(2.0, 4.0), Span(3.0, 5.0)], 0.0, 10.0) == (Span(0.0, 2.0), Span(5.0, 8.0))
+    assert free_between([], 0.0, 10.0) == (TimeSpan(0.0, 10.0),)
+    assert free_between([TimeSpan(0.0, 10.0)], 0.0, 10.0) == ()
+    assert free_between([TimeSpan(8.0, 10.0), TimeSpan(2.0, 4.0), TimeSpan(3.0, 5.0)], 0.0, 10.0) == (
+        TimeSpan(0.0, 2.0),
+        TimeSpan(5.0, 8.0),
+    )
 
 
 seconds = st.integers(-500, 1_500)

@@ -9,7 +9,7 @@ from PIL import Image
 from PIL.ExifTags import GPS
 
 from results.media_metadata.dialects import attitude_of_body
-from results.media_metadata.record import Height, HeightReference, TimeSource, record_from_json, record_to_json
+from results.media_metadata.record import CameraHeightReference, Height, TimeSource, record_from_json, record_to_json
 from tests.results.media_metadata.reading import record
 from tests.results.photos import DJI_NS, dji_photo, exif_of, file_of, gps_at, picture, taken, xmp_of
 
@@ -27,7 +27,7 @@ def test_dji_states_position_heights_and_gimbal(tmp_path: Path) -> None:
     assert found.position is not None and found.attitude is not None
     assert (found.position.lon, found.position.lat, found.position.source) == (LON, LAT, "drone-dji")
     assert [(height.value_m, height.reference) for height in found.heights] == [
-        (82.1, HeightReference.AMSL), (30.0, HeightReference.TAKE_OFF), (pytest.approx(82.1), HeightReference.UNKNOWN)
+        (82.1, CameraHeightReference.AMSL), (30.0, CameraHeightReference.TAKE_OFF), (pytest.approx(82.1), CameraHeightReference.UNKNOWN)
     ]  # fmt: skip
     assert (found.attitude.yaw_deg, found.attitude.pitch_deg, found.attitude.roll_deg) == (0.1, -45.0, 0.0)
     assert (found.taken_at, found.time_source) == (datetime(2026, 6, 1, 8, 0, 0, 250_000, UTC), TimeSource.GPS)
@@ -44,8 +44,8 @@ def test_a_misspelt_longitude_is_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize("tag", [{"RtkFlag": "50"}, {"AltitudeType": "RtkAlt"}])
 def test_with_rtk_the_reference_of_djis_absolute_height_is_unknown(tag: dict[str, str], tmp_path: Path) -> None:
     found = record(dji_photo(**tag), tmp_path)
-    assert found.heights[0] == Height(82.1, HeightReference.UNKNOWN, "drone-dji:AbsoluteAltitude")
-    assert found.heights[1].reference == HeightReference.TAKE_OFF
+    assert found.heights[0] == Height(82.1, CameraHeightReference.UNKNOWN, "drone-dji:AbsoluteAltitude")
+    assert found.heights[1].reference == CameraHeightReference.TAKE_OFF
 
 
 def test_parrot_states_the_camera_against_the_horizon(tmp_path: Path) -> None:
@@ -55,12 +55,12 @@ def test_parrot_states_the_camera_against_the_horizon(tmp_path: Path) -> None:
     assert found.attitude is not None and found.position is not None
     assert (found.attitude.yaw_deg, found.attitude.pitch_deg, found.attitude.source) == (269.5, -15.25, "drone-parrot")
     assert (found.position.lon, found.position.lat) == (pytest.approx(LON, abs=1e-7), pytest.approx(LAT, abs=1e-7))
-    assert found.heights == (Height(250.0, HeightReference.AMSL, "exif:GPSAltitude"),)
+    assert found.heights == (Height(250.0, CameraHeightReference.AMSL, "exif:GPSAltitude"),)
 
 
 def test_anafi_ai_writes_heights_above_the_ellipsoid(tmp_path: Path) -> None:
     found = record(photo(exif_of(make="Parrot", model="ANAFI Ai", gps=gps_at(LON, LAT, 216.0))), tmp_path)
-    assert [height.reference for height in found.heights] == [HeightReference.ELLIPSOID]
+    assert [height.reference for height in found.heights] == [CameraHeightReference.ELLIPSOID]
 
 
 def test_skydio_states_structures(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_skydio_states_structures(tmp_path: Path) -> None:
     assert found.attitude is not None and found.position is not None
     assert (found.attitude.yaw_deg, found.attitude.pitch_deg, found.attitude.roll_deg) == (350.0, -30.5, 1.0)
     assert [(height.value_m, height.reference) for height in found.heights] == [
-        (240.5, HeightReference.AMSL), (12.0, HeightReference.TAKE_OFF)
+        (240.5, CameraHeightReference.AMSL), (12.0, CameraHeightReference.TAKE_OFF)
     ]  # fmt: skip
 
 
@@ -90,7 +90,7 @@ def test_autels_older_firmware_counts_pitch_from_straight_down_and_leaves_its_he
     found = record(photo(exif_of(make="Autel Robotics", gps=gps_at(LON, LAT, 300.0)), xmp), tmp_path)
     assert found.attitude is not None
     assert (found.attitude.yaw_deg, found.attitude.pitch_deg) == (pytest.approx(20.0), pytest.approx(-30.0))
-    assert [height.reference for height in found.heights] == [HeightReference.UNKNOWN]
+    assert [height.reference for height in found.heights] == [CameraHeightReference.UNKNOWN]
 
 
 def test_sensefly_counts_pitch_from_straight_down(tmp_path: Path) -> None:
@@ -119,7 +119,7 @@ def test_a_bodys_angles_become_those_of_the_optical_axis(body: tuple[float, floa
 )
 def test_exif_says_what_its_height_is_above_and_whether_it_is_below(reference: int, value_m: float, above: str, tmp_path: Path) -> None:
     found = record(photo(exif_of(make="senseFly", gps=gps_at(LON, LAT, 12.0, reference))), tmp_path)
-    assert found.heights == (Height(value_m, HeightReference(above), "exif:GPSAltitude"),)
+    assert found.heights == (Height(value_m, CameraHeightReference(above), "exif:GPSAltitude"),)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from mavsdk.plugins.param import Param, ParamError
 from mavsdk.plugins.telemetry import Telemetry
 
 from simulation.flight.plant import FlatGround
-from simulation.vehicle_endpoint.fleet import Fleet
+from simulation.vehicle_endpoint.fleet import SimulatedFleet
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import CAMERA
@@ -34,7 +34,7 @@ MISSION, HOLD, RETURN, LAND = "MISSION", "HOLD", "RETURN_TO_LAUNCH", "LAND"
 class Station:
     """MAVSDK with the plugins that the tests use."""
 
-    fleet: Fleet
+    fleet: SimulatedFleet
     autopilot_type: SimulatedAutopilot
     action: Action
     telemetry: Telemetry

@@ -12,7 +12,7 @@ from planning.views.camera import Gimbal
 from simulation.flight.camera import SIMULATED_CAMERA
 from simulation.flight.plant import FlatGround
 from simulation.flight.states import FlightMode
-from simulation.vehicle_endpoint.fleet import Fleet
+from simulation.vehicle_endpoint.fleet import SimulatedFleet
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from telemetry.models import Capture, CaptureReport
@@ -37,7 +37,7 @@ def items() -> list[MissionItem]:
     return [*flown, plain(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH)]
 
 
-def begin(fleet: Fleet) -> None:
+def begin(fleet: SimulatedFleet) -> None:
     uav = fleet.uavs[0].uav
     for outcome in (uav.load(items()), uav.set_mode(FlightMode.MISSION), uav.arm()):
         assert outcome.is_done, outcome

@@ -20,9 +20,8 @@ from planning.request import EndAction
 from planning.task import Task, TaskKind
 from simulation.assessment.judging import Assessment, judge
 from simulation.rehearsing.flying import fly
-from simulation.services.plan_to_fly import plan_to_fly
+from simulation.services.plan_to_fly import plan_to_fly, surroundings_of
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
-from simulation.services.surroundings import surroundings_of
 from tests.simulation.rehearsals.rehearsed import loaded, scenarios
 from workspace.models import User
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mavlink.decoding.measurement import Measurement
+from telemetry.alerting.detection import CRITICAL
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import battery
-from telemetry.alerting.finding import CRITICAL
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, State, TrueFlight, true_flight
 from tests.telemetry.alerting.watch import Watch

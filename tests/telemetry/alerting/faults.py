@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import shapely
 
+from telemetry.alerting.detection import CRITICAL, WARNING
 from telemetry.alerting.detector_input import WatchedUav
-from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.limits import AlertLimits
 from telemetry.alerting.surroundings import IssuedOrder, NearZone, OnboardState
 from tests.telemetry.alerting.truth import START_S, State, TrueFlight

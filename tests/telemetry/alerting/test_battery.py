@@ -9,9 +9,9 @@ from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from mavlink.rtl import rtl_behaviour
 from telemetry.alerting.advice import ADVICE, OWN_ACT
+from telemetry.alerting.detection import CRITICAL, WARNING, Detection, acts_of
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import battery
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding, acts_of
 from telemetry.alerting.surroundings import IssuedOrder, LinkFacts
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, TrueFlight, true_flight
@@ -36,7 +36,7 @@ def reported(flight: TrueFlight, second: int, left_percent: float, mode: str = "
     )  # fmt: skip
 
 
-def found(flight: TrueFlight, measured: Measurement, watch: Watch | None = None, second: float = 0.0, **around) -> Finding | None:
+def found(flight: TrueFlight, measured: Measurement, watch: Watch | None = None, second: float = 0.0, **around) -> Detection | None:
     watch = watch or Watch()
     now_s = START_S + second
     uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(now_s, now_s, measured))
@@ -47,8 +47,8 @@ def far_from_home(flight: TrueFlight) -> int:
     return max(flight.cruising(20), key=lambda second: abs(flight.states[second].east) + abs(flight.states[second].north))
 
 
-def proposed(finding: Finding) -> list[tuple[str, int]]:
-    return [(act["kind"], act["uav"]) for act in acts_of(finding.code, 7, finding.details)]
+def proposed(detection: Detection) -> list[tuple[str, int]]:
+    return [(act["kind"], act["uav"]) for act in acts_of(detection.code, 7, detection.details)]
 
 
 def test_the_climb_to_the_height_of_its_return_counts_in_the_way_home(flight):
@@ -80,8 +80,8 @@ def test_a_hold_is_no_drain_of_distance(flight):
         now = second + min(after_s, 5) + max(after_s - 125, 0)
         left = left - per_s if is_held else 100.0 - flight.states[now].used_percent - per_s * (120 if after_s >= 125 else 0)
         measured = reported(flight, now, float(round(left)), "LOITER" if is_held else "MISSION", moves=not is_held)
-        finding = found(flight, measured, watch, after_s)
-        levels.append(finding.level if finding else None)
+        detection = found(flight, measured, watch, after_s)
+        levels.append(detection.level if detection else None)
     assert CRITICAL not in levels
 
 
@@ -89,9 +89,9 @@ def test_a_hold_is_no_drain_of_distance(flight):
 def test_below_its_reserve_is_critical_whatever_it_does(left_percent, level, flight):
     second = flight.cruising(20)[-1]  # near its end
     for mode in ("MISSION", "LOITER", "RTL"):
-        finding = found(flight, reported(flight, second, left_percent, mode))
-        assert (finding and finding.level) == level
-    assert level is None or finding.values == {"uav": "Tern", "percent": f"{left_percent:.0f}", "reserve": "20"}
+        detection = found(flight, reported(flight, second, left_percent, mode))
+        assert (detection and detection.level) == level
+    assert level is None or detection.values == {"uav": "Tern", "percent": f"{left_percent:.0f}", "reserve": "20"}
 
 
 def test_reserve_and_the_way_home_reached_is_a_warning_that_proposes_to_return(flight):
@@ -100,8 +100,8 @@ def test_reserve_and_the_way_home_reached_is_a_warning_that_proposes_to_return(f
     assert found(flight, measured, watch) is None
     home_percent = watch.detector_state.battery["home_percent"]
     assert home_percent > 5.0
-    finding = found(flight, reported(flight, far_from_home(flight), 20.0 + home_percent - 0.5, "LOITER", moves=False))
-    assert (finding.level, finding.message, proposed(finding)) == (WARNING, battery.TURN_BACK, [("return", 7)])
+    detection = found(flight, reported(flight, far_from_home(flight), 20.0 + home_percent - 0.5, "LOITER", moves=False))
+    assert (detection.level, detection.message, proposed(detection)) == (WARNING, battery.TURN_BACK, [("return", 7)])
 
 
 def home_percent_of(flight: TrueFlight, second: int) -> float:
@@ -110,32 +110,32 @@ def home_percent_of(flight: TrueFlight, second: int) -> float:
     return watch.detector_state.battery["home_percent"]
 
 
-def advised(finding: Finding) -> str | None:
-    status_texts = finding.details.get(ADVICE)
+def advised(detection: Detection) -> str | None:
+    status_texts = detection.details.get(ADVICE)
     return status_texts and status_texts["message"] % status_texts["values"]
 
 
 def test_below_its_reserve_a_return_that_reaches_home_is_proposed_with_what_is_left_there(flight):
     second = next(second for second in flight.cruising(20) if 8.0 < home_percent_of(flight, second) < 13.5)
-    finding = found(flight, reported(flight, second, 19.0, "LOITER", moves=False))
+    detection = found(flight, reported(flight, second, 19.0, "LOITER", moves=False))
     lands = round(19.0 - home_percent_of(flight, second))
-    assert proposed(finding) == [("return", 7)]
-    assert advised(finding) == f"A return lands with about {lands} % of the battery, below the reserve of 20 %."
+    assert proposed(detection) == [("return", 7)]
+    assert advised(detection) == f"A return lands with about {lands} % of the battery, below the reserve of 20 %."
 
 
 def test_a_return_that_leaves_hardly_any_stands_beside_a_landing_here(flight):
     second = far_from_home(flight)
-    finding = found(flight, reported(flight, second, home_percent_of(flight, second) + 2.4, "LOITER", moves=False))
-    assert (finding.level, proposed(finding)) == (CRITICAL, [("return", 7), ("land", 7)])
-    assert advised(finding) == "A return lands with about 2 % of the battery only: land here if the ground allows it."
+    detection = found(flight, reported(flight, second, home_percent_of(flight, second) + 2.4, "LOITER", moves=False))
+    assert (detection.level, proposed(detection)) == (CRITICAL, [("return", 7), ("land", 7)])
+    assert advised(detection) == "A return lands with about 2 % of the battery only: land here if the ground allows it."
 
 
 def test_where_home_is_out_of_reach_the_alert_says_why_return_is_missing(flight):
     second = far_from_home(flight)
     home = home_percent_of(flight, second)
-    finding = found(flight, reported(flight, second, home - 1.0, "LOITER", moves=False))
-    assert proposed(finding) == [("land", 7)]
-    assert advised(finding) == f"Return is not offered: it takes about {home:.0f} % of the battery, and {home - 1.0:.0f} % is left."
+    detection = found(flight, reported(flight, second, home - 1.0, "LOITER", moves=False))
+    assert proposed(detection) == [("land", 7)]
+    assert advised(detection) == f"Return is not offered: it takes about {home:.0f} % of the battery, and {home - 1.0:.0f} % is left."
 
 
 def test_where_home_is_out_of_reach_the_nearest_landing_place_is_proposed(flight):
@@ -143,9 +143,9 @@ def test_where_home_is_out_of_reach_the_nearest_landing_place_is_proposed(flight
     state, home = flight.states[second], home_percent_of(flight, second)
     near = flight.position(state.east + 60.0, state.north)
     with_landing = TrueFlight(**{**vars(flight), "model": _with_rally(flight, near)})
-    finding = found(with_landing, reported(flight, second, home + 2.0, "LOITER", moves=False))
-    assert proposed(finding) == [("return", 7)]
-    assert advised(finding).startswith("A return leads to the landing place 60 m away and lands there with about")
+    detection = found(with_landing, reported(flight, second, home + 2.0, "LOITER", moves=False))
+    assert proposed(detection) == [("return", 7)]
+    assert advised(detection).startswith("A return leads to the landing place 60 m away and lands there with about")
 
 
 def _with_rally(flight: TrueFlight, point: LonLat):
@@ -158,30 +158,30 @@ def test_a_uav_that_comes_down_by_its_own_failsafe_is_left_alone_and_the_alert_s
     watch, second = Watch(), flight.cruising(20)[-1]
     link = LinkFacts(battery_state="critical")
     found(flight, reported(flight, second, 15.0), watch, link=link)
-    finding = found(flight, reported(flight, second, 15.0, mode), watch, 3.0, link=link)
-    assert (finding.level, proposed(finding)) == (CRITICAL, [])
+    detection = found(flight, reported(flight, second, 15.0, mode), watch, 3.0, link=link)
+    assert (detection.level, proposed(detection)) == (CRITICAL, [])
     since = datetime.fromtimestamp(START_S + 3.0, UTC).isoformat()
-    assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": False}
-    finding = found(flight, reported(flight, second, 15.0, mode), watch, 9.0, link=link, order=IssuedOrder("return", START_S))
-    assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": True}
+    assert detection.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": False}
+    detection = found(flight, reported(flight, second, 15.0, mode), watch, 9.0, link=link, order=IssuedOrder("return", START_S))
+    assert detection.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": True}
 
 
 def test_a_return_that_is_too_short_of_battery_to_reach_home_can_be_cut_by_a_landing(flight):
     second = far_from_home(flight)
     home = home_percent_of(flight, second)
     returning = reported(flight, second, home - 2.0, "RTL")
-    finding = found(flight, returning)
-    assert (proposed(finding), finding.details[OWN_ACT]["since"]) == ([("land", 7)], None)
-    assert advised(finding).startswith("Its battery does not last for the return")
-    finding = found(flight, reported(flight, second, home + 2.0, "RTL"))
-    assert (proposed(finding), advised(finding)) == ([("land", 7)], "It lands with about 2 % of the battery (reserve 20 %).")
+    detection = found(flight, returning)
+    assert (proposed(detection), detection.details[OWN_ACT]["since"]) == ([("land", 7)], None)
+    assert advised(detection).startswith("Its battery does not last for the return")
+    detection = found(flight, reported(flight, second, home + 2.0, "RTL"))
+    assert (proposed(detection), advised(detection)) == ([("land", 7)], "It lands with about 2 % of the battery (reserve 20 %).")
     assert proposed(found(flight, reported(flight, second, home + 12.0, "RTL"))) == [], "it gets home"
 
 
 def test_a_uav_whose_battery_is_not_known_by_its_energy_is_judged_by_what_it_reports():
     uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, Measurement(battery_percent=15.0, is_in_air=True)))
-    (finding,) = battery.detect(Watch().inputs(START_S, uav))
-    assert (finding.level, finding.message) == (CRITICAL, battery.BELOW)
+    (detection,) = battery.detect(Watch().inputs(START_S, uav))
+    assert (detection.level, detection.message) == (CRITICAL, battery.BELOW)
 
 
 def test_pages_are_told_minutes_to_the_reserve_and_home(flight):

@@ -12,9 +12,9 @@ from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 from mavlink.decoding.measurement import Measurement
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.alerting.conflicts import MAX_MET, NEAR_M, STEP_S, Moving, conflicts, ways_of
+from telemetry.alerting.detection import CRITICAL, WARNING
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
-from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.estimation.estimate import Ellipse, Estimate
@@ -202,7 +202,7 @@ def test_a_pair_with_several_ways_has_one_alert():
     report = Report(START_S, START_S, reported(at(0.0, 0.0), 29.0))
     uav = WatchedUav(1, 1, "UAV 1", MISSION, MISSION, newest=report)
     found = DETECTOR.detect(Watch().inputs(START_S, uav, conflicts=met))
-    assert [(finding.subject, finding.level) for finding in found] == [("2", CRITICAL)]
+    assert [(detection.subject, detection.level) for detection in found] == [("2", CRITICAL)]
 
 
 def test_one_that_lands_is_not_taken_to_stay_at_the_end_of_its_route():

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from telemetry.alerting.conflicts import Flying, Why, conflicts, ways_of, yielding
+from telemetry.alerting.detection import CRITICAL, WARNING, acts_of
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
-from telemetry.alerting.finding import CRITICAL, WARNING, acts_of
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
@@ -21,7 +21,7 @@ from tests.telemetry.alerting.watch import Watch
 LEVEL_M = 30.0
 
 
-def finding_of(first, second):
+def detection_of(first, second):
     moving = [*ways(1, first, None), *ways(2, second, None)]
     met = tuple(conflicts(moving, LIMITS.converging_s)[1])
     uav = WatchedUav(1, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, first))
@@ -32,13 +32,13 @@ def finding_of(first, second):
 @pytest.mark.parametrize("apart_m", [3.0, 7.0, 12.0])
 def test_the_distance_of_now_is_reported_and_its_uncertainty_beside_it(apart_m):
     """Bounds of 4 m each: the distance at the worst of both would be 0 m."""
-    found = finding_of(reported(at(0.0, 0.0), LEVEL_M), reported(at(apart_m, 0.0), LEVEL_M + 2.0))
+    found = detection_of(reported(at(0.0, 0.0), LEVEL_M), reported(at(apart_m, 0.0), LEVEL_M + 2.0))
     assert (found.values["metres"], found.values["height"], found.values["bound"]) == (apart_m, 2, 6)
     assert found.details["distance_m"] == pytest.approx(apart_m, abs=0.2)
 
 
 def test_one_that_comes_up_from_behind_is_to_be_held():
-    found = finding_of(reported(at(0.0, 0.0), LEVEL_M, north_mps=9.0), reported(at(0.0, 60.0), LEVEL_M, north_mps=3.0))
+    found = detection_of(reported(at(0.0, 0.0), LEVEL_M, north_mps=9.0), reported(at(0.0, 60.0), LEVEL_M, north_mps=3.0))
     assert (found.values["hold"], found.values["why"], found.values["speed"]) == ("UAV 1", Why.BEHIND, 6)
     assert acts_of(CODE, 1, found.details) == [{"kind": "hold", "uav": 1}]
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from mavlink.decoding.measurement import Measurement
+from telemetry.alerting.detection import CRITICAL
 from telemetry.alerting.detector import POLL_INTERVAL_S
 from telemetry.alerting.detector_input import WatchedUav
+from telemetry.alerting.detectors import DETECTORS
 from telemetry.alerting.detectors.link import lost_after_s
-from telemetry.alerting.finding import CRITICAL
-from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.surroundings import LinkFacts
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.faults import FAULTS, LIMITS, Fault, link_lost

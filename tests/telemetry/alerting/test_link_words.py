@@ -23,8 +23,8 @@ def model() -> FlightModel:
 def status_texts(model: FlightModel | None, mode: str, planned: LostLinkPlan | None = None, autopilot: str = "") -> str:
     uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, Measurement(mode=mode, is_in_air=True)))
     model = model and replace(model, lost_link=planned)
-    (finding,) = link.detect(Watch().inputs(START_S + 40.0, uav, model=model, link=LinkFacts(autopilot=autopilot)))
-    advice = finding.details[ADVICE]
+    (detection,) = link.detect(Watch().inputs(START_S + 40.0, uav, model=model, link=LinkFacts(autopilot=autopilot)))
+    advice = detection.details[ADVICE]
     return advice["message"] % advice["values"]
 
 

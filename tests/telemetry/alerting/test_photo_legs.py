@@ -13,9 +13,9 @@ from planning.views.view_plan import ViewSpeeds, detail_plan
 from simulation.flight.events import ItemReached
 from simulation.flight.flown import FlownFlightLog
 from simulation.rehearsing.weather_scenario import Named
+from telemetry.alerting.detection import CRITICAL, WARNING
 from telemetry.alerting.detector_input import WatchedUav
-from telemetry.alerting.finding import CRITICAL, WARNING
-from telemetry.alerting.order import DETECTORS
+from telemetry.alerting.detectors import DETECTORS
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.estimation.report import Report

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from telemetry.alerting.detectors import CODES, DETECTORS
 from telemetry.alerting.detectors.link import lost_after_s
 from telemetry.alerting.limits import BOUNDS, AlertLimits, InvalidLimits, checked_limits, limits_of
-from telemetry.alerting.order import CODES, DETECTORS
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "alerts.md").read_text()
 

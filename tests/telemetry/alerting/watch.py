@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 from telemetry.alerting.detector_input import DetectorInput, WatchedUav
 from telemetry.alerting.detector_state import DetectorState
+from telemetry.alerting.detectors import DETECTORS
 from telemetry.alerting.limits import AlertLimits
-from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.state_machine import RANK, Closed, changes
 from telemetry.alerting.surroundings import OnboardState
 
@@ -45,13 +45,13 @@ class Watch:
                 level = self.open_levels.pop((change.code, change.subject))
                 self.events.append(Event(inputs.now_s, "closed", change.code, change.subject, level))
                 continue
-            finding = change.finding
-            key = finding.code, finding.subject
+            detection = change.detection
+            key = detection.code, detection.subject
             before = self.open_levels.get(key)
-            if before is None or RANK[finding.level] > RANK[before]:
-                self.events.append(Event(inputs.now_s, "opened" if before is None else "rose", *key, finding.level))
-            self.open_levels[key] = finding.level
-            finding.message % finding.values  # every value is there
+            if before is None or RANK[detection.level] > RANK[before]:
+                self.events.append(Event(inputs.now_s, "opened" if before is None else "rose", *key, detection.level))
+            self.open_levels[key] = detection.level
+            detection.message % detection.values  # every value is there
 
     def opened(self) -> list[Event]:
         return [event for event in self.events if event.what == "opened"]

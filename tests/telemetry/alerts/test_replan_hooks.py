@@ -4,11 +4,11 @@ import pytest
 
 from missions.models import Mission, OfferState, ReplanOffer
 from missions.services.replanning import REPLAN, settle_offers
-from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
+from telemetry.alerting.detection import ADVISORY, CRITICAL, WARNING, Detection
 from telemetry.alerting.state_machine import CLEARED, LANDED, Closed
 from telemetry.models import AlertLevel
 from telemetry.services.alerts.alerts import open_alert
-from telemetry.services.alerts.replan_hooks import code_of, suggest_for_findings, withdraw_for_closed
+from telemetry.services.alerts.replan_hooks import code_of, suggest_for_detections, withdraw_for_closed
 from tests.accounts.users import a_user
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
@@ -29,8 +29,8 @@ from workspace.jobs.services import create_job
         ("weather", ADVISORY, {}, None),
     ],
 )
-def test_a_finding_is_a_reason_when_its_uav_will_not_finish(code, level, details, reason):
-    assert code_of(Finding(code, level, "%(uav)s …", {"uav": "Tern"}, details=details)) == reason
+def test_a_detection_is_a_reason_when_its_uav_will_not_finish(code, level, details, reason):
+    assert code_of(Detection(code, level, "%(uav)s …", {"uav": "Tern"}, details=details)) == reason
 
 
 @pytest.fixture
@@ -41,8 +41,8 @@ def flight(settings, tmp_path) -> Flight:
 
 
 def lose_the_link(flight: Flight, seconds: int = 31) -> None:
-    finding = Finding("link-lost", CRITICAL, "%(uav)s", {"uav": "Tern", "seconds": seconds}, details={})
-    suggest_for_findings([(flight.mission.pk, flight.uavs[0].pk, finding)])
+    detection = Detection("link-lost", CRITICAL, "%(uav)s", {"uav": "Tern", "seconds": seconds}, details={})
+    suggest_for_detections([(flight.mission.pk, flight.uavs[0].pk, detection)])
 
 
 def receive_again(flight: Flight, reason: str = CLEARED) -> None:

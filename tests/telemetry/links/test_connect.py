@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from django.test import Client
 
-from telemetry.selectors.gateway_addresses import GatewayAddress, gateway_addresses
+from telemetry.selectors.vehicles import GatewayAddress, gateway_addresses
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.commands.outbox import a_uav

@@ -8,14 +8,14 @@ import pytest
 from inspection.importers.assets.asset_file import RowFaults, opened_asset_file
 from inspection.importers.assets.delimited import number_of
 from inspection.importers.assets.mapping import AssetRecord, Tally, checked_mapping, records_of
-from inspection.importers.assets.survey import Survey, suggested_mapping, survey_of
+from inspection.importers.assets.survey import AssetFileSurvey, suggested_mapping, survey_of
 from inspection.importers.rows import AssetFileError
 from tests.inspection.importers.assets.made_files import geojson, line, point
 
 AREA = {"type": "Polygon", "coordinates": [[[8, 47], [8.1, 47], [8.1, 47.1], [8, 47]]]}
 
 
-def survey(path: Path) -> Survey:
+def survey(path: Path) -> AssetFileSurvey:
     with opened_asset_file(path) as file:
         return survey_of(file.rows(RowFaults()), file.source.columns)
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from inspection.importers.terrain.geotiff import MAX_PART_BYTES
-from inspection.importers.terrain.raster import Kind, TerrainFileError
+from inspection.importers.terrain.raster import PostKind, TerrainFileError
 from inspection.importers.terrain.terrain_file import datum_of, opened_terrain
 from tests.inspection.importers.terrain.tiffs import opened_tiff, write_geotiff
 
@@ -53,8 +53,8 @@ def test_a_part_that_a_sparse_file_leaves_out_is_void(tmp_path: Path) -> None:
     options = {"sparse_ok": "true", "tiled": "yes", "blockxsize": 32, "blockysize": 32}
     with opened_tiff(write_geotiff(tmp_path / "sparse.tif", heights, **options)) as tiff:
         kinds = tiff.window(0, 0, 64, 64).kinds
-    assert (kinds[:32, :32] == Kind.DECLARED_VOID).all()
-    assert (kinds[32:] == Kind.HEIGHT).all()
+    assert (kinds[:32, :32] == PostKind.DECLARED_VOID).all()
+    assert (kinds[32:] == PostKind.HEIGHT).all()
 
 
 def test_posts_stand_in_the_middle_of_cells_or_on_the_corner_as_the_file_says(tmp_path: Path) -> None:
@@ -187,8 +187,8 @@ def test_parts_that_a_file_does_not_list_are_void(tmp_path: Path) -> None:
     path.write_bytes(tiff_of(zlib.compress(np.full(100, 300, dtype="<f4").tobytes()), width=100, height=100, rows_per_strip=1))
     with opened_tiff(path) as tiff:
         window = tiff.window(0, 0, 100, 100)
-    assert (window.kinds[0] == Kind.HEIGHT).all()
-    assert (window.kinds[1:] == Kind.DECLARED_VOID).all()
+    assert (window.kinds[0] == PostKind.HEIGHT).all()
+    assert (window.kinds[1:] == PostKind.DECLARED_VOID).all()
     assert np.isnan(window.heights_m[1:]).all()
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from inspection.importers.terrain.raster import Kind, Survey, Window, blocks_of, window_of
+from inspection.importers.terrain.raster import PostKind, PostSurvey, Window, blocks_of, window_of
 
 
 class Drawn:
@@ -37,7 +37,7 @@ def test_every_post_and_every_void_counts_once_though_blocks_share_their_edges()
     raw[:, 14] = 99_999.0
     raw[20:40, 20:36] = np.nan
     for size in (8, 16, 64):
-        survey = Survey()
+        survey = PostSurvey()
         for block in blocks_of(Drawn(raw), size=size):
             survey.add(block)
         assert survey.posts == raw.size
@@ -56,14 +56,14 @@ def test_a_block_of_voids_alone_has_no_grid_and_is_counted():
 def test_a_declared_void_an_undeclared_one_and_a_height_are_told_apart():
     raw = np.array([[-32768, -9999, 12_000, 99_999, 300, 77]], dtype=np.int32)
     window = window_of(raw, 77.0)
-    assert window.kinds.tolist() == [[Kind.UNDECLARED_VOID] * 4 + [Kind.HEIGHT, Kind.DECLARED_VOID]]
+    assert window.kinds.tolist() == [[PostKind.UNDECLARED_VOID] * 4 + [PostKind.HEIGHT, PostKind.DECLARED_VOID]]
     assert np.isnan(window.heights_m).tolist() == [[True] * 4 + [False, True]]
 
 
 def test_a_void_is_met_though_float32_cannot_hold_the_declared_number():
     lowest = np.array([[np.finfo(np.float32).min, 412.5]], dtype=np.float32)
-    assert window_of(lowest, -3.40282346638529e38).kinds.tolist() == [[Kind.DECLARED_VOID, Kind.HEIGHT]]
-    assert window_of(lowest, float("nan")).kinds.tolist() == [[Kind.UNDECLARED_VOID, Kind.HEIGHT]]
+    assert window_of(lowest, -3.40282346638529e38).kinds.tolist() == [[PostKind.DECLARED_VOID, PostKind.HEIGHT]]
+    assert window_of(lowest, float("nan")).kinds.tolist() == [[PostKind.UNDECLARED_VOID, PostKind.HEIGHT]]
 
 
 def test_heights_become_metres_before_they_are_judged():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pyproj import Transformer
 
-from inspection.importers.terrain.raster import Kind, Survey, TerrainFileError, blocks_of
+from inspection.importers.terrain.raster import PostKind, PostSurvey, TerrainFileError, blocks_of
 from inspection.importers.terrain.terrain_file import opened_terrain
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 
@@ -44,12 +44,12 @@ def test_voids_stay_voids_and_the_corners_of_an_askew_file_are_none(tmp_path: Pa
     heights[50:60, 70:90] = -9999.0
     heights[100, 100] = 99_999.0
     with opened_terrain(write_geotiff(tmp_path / "askew.tif", heights, srid=32632, origin=(700_000, 5_200_000), step=30.0)) as file:
-        survey = Survey()
+        survey = PostSurvey()
         whole = file.rasters[0].window(0, 0, file.rasters[0].height, file.rasters[0].width)
         for block in blocks_of(file.rasters[0]):
             survey.add(block)
-    assert (whole.kinds == Kind.OUTSIDE).any()
-    assert survey.posts == int((whole.kinds != Kind.OUTSIDE).sum())
+    assert (whole.kinds == PostKind.OUTSIDE).any()
+    assert survey.posts == int((whole.kinds != PostKind.OUTSIDE).sum())
     assert 200 <= survey.voids <= 330  # 200 posts, and those beside them that would be mixed with a void
     assert survey.undeclared_voids >= 1
     assert survey.highest_m < 500

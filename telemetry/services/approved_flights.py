@@ -1,8 +1,9 @@
-"""Data of approved flights for detectors, computed once: an approval never changes."""
+"""Data of approved flights for detectors and for the estimator, computed once: an approval never changes."""
 
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 from uuid import UUID
 
 from django.conf import settings
@@ -10,7 +11,7 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from missions.models import Approval
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load
-from planning.clearance.lost_link import LostLinkPlan
+from planning.clearance.lost_link import LostLink, LostLinkPlan
 from planning.energy.conditions import conditions_from_json
 from planning.energy.performance import performance_from_json
 from planning.request import lost_link_from_json
@@ -18,9 +19,32 @@ from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
-from telemetry.services.of_flight import OfFlight
+from telemetry.estimation.knowledge import Knowledge
 
 HEIGHT_OF_WAY_M = 60.0  # height above ground of the wind used for the flight home
+FORGOTTEN_AFTER_S = 600.0  # the estimator asks every second
+
+Found = TypeVar("Found")
+
+
+class OfFlight(Generic[Found]):
+    """Caches a function of approval id, UAV id and flight number. Expired entries are dropped when a new one is added."""
+
+    def __init__(self, work_out: Callable[[UUID, int, int], Found], now_s: Callable[[], float] = time.monotonic) -> None:
+        self._work_out, self._now_s = work_out, now_s
+        self._kept: dict[tuple[UUID, int, int], tuple[Found, float]] = {}  # with the time of the last use
+
+    def __call__(self, approval_id: UUID, uav_id: int, flight: int) -> Found:
+        key, now_s = (approval_id, uav_id, flight), self._now_s()
+        known = self._kept.get(key)
+        if known is None:
+            known = self._work_out(approval_id, uav_id, flight), now_s
+            self._kept = {other: kept for other, kept in self._kept.items() if now_s - kept[1] <= FORGOTTEN_AFTER_S}
+        self._kept[key] = known[0], now_s
+        return known[0]
+
+    def __len__(self) -> int:
+        return len(self._kept)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +89,26 @@ def _lost_link(document: Mapping[str, Any]) -> LostLinkPlan | None:
         return None
     planned = lost_link_from_json(document["lost_link"])
     return LostLinkPlan(planned.behaviour, planned.rally_points, planned.hold_s)
+
+
+@OfFlight
+def knowledge_of(approval_id: UUID, uav_id: int, flight: int) -> Knowledge:
+    """Return what the estimator knows of a flight; empty after the last flight and for a damaged document."""
+    found = _approved(approval_id, uav_id, flight)
+    if found is None:
+        return Knowledge()
+    approved, document = found
+    figures = next(route["figures"] for route in document["routes"] if route["uav"] == uav_id)
+    performance = performance_from_json(figures["performance"])
+    return Knowledge(
+        flight=approved.route.flights[flight - 1],
+        cruise_speed_mps=approved.route.cruise_speed_mps,
+        max_airspeed_mps=performance.max_airspeed_mps,
+        climb_speed_mps=performance.climb_speed_mps or Knowledge.climb_speed_mps,
+        conditions=conditions_from_json(document["conditions"]),
+        home=approved.take_off.position,
+        is_to_go_on=lost_link_from_json(document["lost_link"] or {}).behaviour is LostLink.GO_ON,
+    )
 
 
 @OfFlight

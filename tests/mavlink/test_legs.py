@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.intermediate_waypoints import FLOWN, leg_length_m, with_points_between
+from mavlink.legs import FLOWN, leg_length_m, with_points_between
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 
 E7_M = 111_320.0 / 1e7

@@ -2,7 +2,7 @@
 
 from uuid import UUID, uuid4
 
-from telemetry.services.of_flight import FORGOTTEN_AFTER_S, OfFlight
+from telemetry.services.approved_flights import FORGOTTEN_AFTER_S, OfFlight
 
 
 class Clock:

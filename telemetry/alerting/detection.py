@@ -1,4 +1,4 @@
-"""A detector's finding, and the acts that an operator can answer it with."""
+"""What a detector detects, and the acts that an operator can answer it with."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -26,11 +26,11 @@ def acts_of(code: str, uav_id: int | None, details: Mapping[str, Any]) -> list[d
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class Detection:
     """A present cause. `code` and `subject` identify it: it has one alert while it lasts.
 
     `message` is an English template; `values` are inserted when shown, in the reader's language. `details` are values for programs.
-    `severity` compares findings of one cause and level: more is worse.
+    `severity` compares detections of one cause and level: more is worse.
     """
 
     code: str
