@@ -6384,6 +6384,24 @@ export interface components {
             is_armed?: boolean | null;
             is_in_air?: boolean | null;
         };
+        /** @description What a camera of a UAV states of itself (CAMERA_INFORMATION of MAVLink); null is unknown. */
+        ReportedCamera: {
+            /** @description of the vehicle that stated it */
+            component: number;
+            /** @description vendor and model */
+            name: string;
+            /**
+             * Format: double
+             * @description of a zoom at any of its steps
+             */
+            focal_length_mm: number | null;
+            /** Format: double */
+            sensor_width_mm: number | null;
+            /** Format: double */
+            sensor_height_mm: number | null;
+            pixels_wide: number | null;
+            pixels_high: number | null;
+        };
         ReportedResult: {
             uav: number;
             uav_name: string;
@@ -7979,6 +7997,8 @@ export interface components {
              *     * `other-length` - other-length
              */
             loaded_doubt: components["schemas"]["LoadedDoubtEnum"] | components["schemas"]["BlankEnum"];
+            /** @description by MAVLink only */
+            cameras: components["schemas"]["ReportedCamera"][];
             /** @description base address of the HTTP link */
             server: string;
             /** @description where vehicles that speak MAVLink connect; empty: no gateway */
@@ -9809,6 +9829,7 @@ export type ReplanAsked = components['schemas']['ReplanAsked'];
 export type ReplanOffer = components['schemas']['ReplanOffer'];
 export type ReplanOfferPage = components['schemas']['ReplanOfferPage'];
 export type ReportRequest = components['schemas']['ReportRequest'];
+export type ReportedCamera = components['schemas']['ReportedCamera'];
 export type ReportedResult = components['schemas']['ReportedResult'];
 export type ReportsRequest = components['schemas']['ReportsRequest'];
 export type Result = components['schemas']['Result'];

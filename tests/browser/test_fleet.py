@@ -71,6 +71,37 @@ def place_on_map(page: Page, position: list[float]) -> dict[str, float]:
     )
 
 
+REPORTS_A_CAMERA = """
+from missions.models import Uav
+from telemetry.models import UavLink
+from django.utils import timezone
+figures = dict(focal_length_mm=5.15, sensor_width_mm=5.2, sensor_height_mm=2.9, pixels_wide=2560, pixels_high=1440)
+camera = dict(component=100, name="Siyi ZR10", **figures)
+UavLink.objects.create(uav=Uav.objects.get(name="Siskin 1"), last_message_at=timezone.now(), cameras=[camera])
+"""
+
+
+def test_a_camera_that_a_uav_reports_is_added_to_its_type(visitor: Visitor, picture: Picture) -> None:
+    page = visitor.signs_in("opal")
+    kind = writes(page, "POST", "/uav-types", {"name": "Siskin", "range_unlimited": True})
+    writes(page, "POST", "/uavs", {"name": "Siskin 1", "type": kind["id"], "position": YARD})
+    visitor.site.does(REPORTS_A_CAMERA)
+    fleet(page)
+    page.get_by_role("link", name="Siskin 1").click()
+    expect(details(page).get_by_text("Siyi ZR10, 2,560\u00a0×\u00a01,440, 5.2\u00a0mm")).to_be_visible()
+    picture(page, "fleet-reported-camera")
+    page.get_by_role("button", name="Add Siyi ZR10 to Siskin", exact=True).click()
+    expect(page.get_by_role("heading", name="Edit Siskin")).to_be_visible()
+    page.get_by_role("button", name="Save", exact=True).click()
+    is_saved(page, "Siskin")
+    (camera,) = asks(page, f"/uav-types/{kind['id']}")["cameras"]
+    assert (camera["name"], camera["pixels_wide"], camera["focal_lengths_mm"]) == ("Siyi ZR10", 2560, [5.15])
+    tab(page, "UAVs")
+    page.get_by_role("link", name="Siskin 1").click()
+    expect(details(page).get_by_text("Siyi ZR10, 2,560")).to_be_visible()
+    expect(page.get_by_role("button", name="Add Siyi ZR10 to Siskin")).to_have_count(0)
+
+
 def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor: Visitor, picture: Picture) -> None:
     page = fleet(visitor.signs_in("opal"))
     tab(page, "Types")

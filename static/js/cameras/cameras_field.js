@@ -11,7 +11,7 @@ import { cameraText } from "./words.js";
 /** @import { Field } from "../page/fields.js" */
 /** @import { Figures } from "./camera_form.js" */
 
-const MAX_CAMERAS = 6; // as in missions/serializers/fleet.py
+export const MAX_CAMERAS = 6; // as in missions/serializers/fleet.py
 const LIST_ROWS = 8;
 
 /**

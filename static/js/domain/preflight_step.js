@@ -33,6 +33,7 @@ const CHECK_NAMES = {
   mission: t("mission on board"),
   fence: t("fence"),
   return: t("return path"),
+  camera: t("camera"),
   wind: t("wind"),
   others: t("other UAVs"),
   departure: t("departure"),

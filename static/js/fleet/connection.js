@@ -1,13 +1,14 @@
 /** How a UAV is connected: its link, its last message, its own report. Polled while it is shown. */
 
 import { get } from "../api.js";
+import { focalText, pixelsText } from "../cameras/words.js";
 import { h, term } from "../dom.js";
 import { t } from "../text.js";
 import { agoText, percentText } from "../units.js";
 import { LINKS } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { UavConnection } from "../api_types.d.ts" */
+/** @import { ReportedCamera, UavConnection } from "../api_types.d.ts" */
 
 const ASKED_EVERY_MS = 5_000;
 const WAITING_MS = 2_000; // before the first message, which a technician waits for beside the UAV
@@ -51,6 +52,12 @@ export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server
   return loaded_doubt ? `${summary}; ${DOUBTS[loaded_doubt]}` : summary;
 }
 
+/** "DJI M30T, 4,000 × 3,000, 24 mm". @param {ReportedCamera} camera */
+export function reportedCameraText({ name, pixels_wide, pixels_high, focal_length_mm }) {
+  const pixels = pixels_wide && pixels_high ? pixelsText({ pixels_wide, pixels_high }) : "";
+  return [name, pixels, focal_length_mm && focalText([focal_length_mm])].filter(Boolean).join(", ");
+}
+
 /** @param {UavConnection} connection */
 function drawing(connection) {
   const { words, isReceived } = receivedWords(connection);
@@ -76,6 +83,7 @@ function drawing(connection) {
             }),
       ),
       term(t("On it"), loaded_approval ? loadedText(connection) : ""),
+      connection.cameras.map((camera) => term(t("Camera"), reportedCameraText(camera))),
     ),
   ];
 }

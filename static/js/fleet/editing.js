@@ -10,8 +10,9 @@ import { conflictNotice } from "./panel.js";
 import { readRow } from "./words.js";
 
 /** @import { Answer, Options } from "../api.js" */
+/** @import { Figures } from "../cameras/camera_form.js" */
 /** @import { Panel } from "./panel.js" */
-/** @import { Body, FleetMap, FleetPage, FleetState, Form, KeptEdit, Position, Row, RowAnswer, Store, Tab } from "./types.d.ts" */
+/** @import { Body, FleetMap, FleetPage, FleetState, FleetType, Form, KeptEdit, Position, Row, RowAnswer, Store, Tab } from "./types.d.ts" */
 
 /**
  * Functions that the page offers to the edit.
@@ -151,6 +152,14 @@ export class Editing {
     this.#context.turnTo(tab);
     this.#context.store.update({ chosen: row && { tab, id: row.id } });
     await this.start(row, kept);
+  }
+
+  /** Edit a type with one camera more. @param {FleetType} type @param {Figures} camera */
+  async addCamera(type, camera) {
+    const body = /** @type {Body} */ ({ ...bodyOf("types", type), cameras: [...type.cameras, camera] });
+    this.#context.turnTo("types");
+    this.#context.store.update({ chosen: { tab: "types", id: type.id } });
+    await this.start(type, { body, etag: ifUnchanged(type) });
   }
 
   /** Show the stored row, unless another act has begun meanwhile. @param {Tab} tab @param {number} id */

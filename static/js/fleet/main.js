@@ -72,6 +72,8 @@ const panel = mountPanel({
     refresh: load,
     failed: notify,
     showUavs,
+    typeOf: (uav) => store.state.types?.find(({ id }) => id === uav.type),
+    addCamera: (type, camera) => editing.addCamera(type, camera),
   },
 });
 const editing = new Editing({

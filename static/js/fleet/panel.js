@@ -9,12 +9,13 @@ import { mountConnect } from "./connect.js";
 import { mountConnection } from "./connection.js";
 import { mountCredentials } from "./credentials.js";
 import { mountTypeAirframe } from "./type_airframe.js";
-import { mountTypeCameras } from "./type_cameras.js";
+import { camerasToAdd, mountTypeCameras } from "./type_cameras.js";
 import { mountTypeLimits } from "./type_limits.js";
 import { MISSION_STATES, missingList, stateChip } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { UavMission, UavMissionPage, UavState } from "../api_types.d.ts" */
+/** @import { UavConnection, UavMission, UavMissionPage, UavState } from "../api_types.d.ts" */
+/** @import { Figures } from "../cameras/camera_form.js" */
 /** @import { Child } from "../dom.js" */
 /** @import { Body, FleetType, Form, Kind, Row, Tab, Uav } from "./types.d.ts" */
 
@@ -27,6 +28,8 @@ import { MISSION_STATES, missingList, stateChip } from "./words.js";
  * @property {() => unknown} refresh
  * @property {(error: unknown) => void} failed
  * @property {(tab: Tab, id: number) => unknown} showUavs
+ * @property {(uav: Uav) => FleetType | undefined} typeOf
+ * @property {(type: FleetType, camera: Figures & { name: string }) => unknown} addCamera
  */
 /** @typedef {{ canPlan: boolean, isAdministrator: boolean, acts: PanelActs }} How */
 /** @typedef {ReturnType<typeof mountPanel>} Panel */
@@ -82,10 +85,28 @@ async function fillMissions(list, none, address) {
   list.append(more);
 }
 
+/**
+ * For each camera that the UAV reports in full and its type lacks, a button that adds it to the type.
+ *
+ * @param {Uav} uav
+ * @param {UavConnection} connection
+ * @param {PanelActs} acts
+ */
+function newCameraButtons(uav, { cameras }, acts) {
+  const type = acts.typeOf(uav);
+  if (!type) return [];
+  return camerasToAdd(cameras, type).map((camera) =>
+    button("camera", t("Add {camera} to {type}", { camera: camera.name, type: type.name }), () =>
+      acts.addCamera(type, camera),
+    ),
+  );
+}
+
 /** What there is below the facts of a UAV; it fills itself. @param {Uav} uav @param {How} how @returns {Child} */
 function partsOfUav(uav, { canPlan, isAdministrator, acts }) {
   const connection = h("div", { class: "connection" });
   const connect = h("div", {});
+  const cameras = h("div", {});
   const credentials = h("ul", { class: "plain-list" });
   const missions = h("ul", { class: "plain-list" });
   const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
@@ -94,10 +115,20 @@ function partsOfUav(uav, { canPlan, isAdministrator, acts }) {
   mountConnection(connection, uav, (answer) => {
     showState ??= mountConnect(connect, uav, answer);
     showState(answer);
+    if (canPlan && !cameras.hasChildNodes()) cameras.append(...newCameraButtons(uav, answer, acts));
   }).catch(acts.failed);
   mountCredentials(credentials, uav, { canPlan, isAdministrator, onChange: acts.refresh }).catch(acts.failed);
   fillMissions(missions, none, `/uavs/${uav.id}/missions`).catch(acts.failed);
-  return [h("h3", {}, t("Link")), connection, connect, credentials, h("h3", {}, t("Missions")), missions, none];
+  return [
+    h("h3", {}, t("Link")),
+    connection,
+    cameras,
+    connect,
+    credentials,
+    h("h3", {}, t("Missions")),
+    missions,
+    none,
+  ];
 }
 
 /** @param {FleetType} type @param {How} how @returns {Child} */
