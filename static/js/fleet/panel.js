@@ -106,7 +106,7 @@ function newCameraButtons(uav, { cameras }, acts) {
 function partsOfUav(uav, { canPlan, isAdministrator, acts }) {
   const connection = h("div", { class: "connection" });
   const connect = h("div", {});
-  const cameras = h("div", {});
+  const cameras = h("div", { class: "reported-cameras" });
   const credentials = h("ul", { class: "plain-list" });
   const missions = h("ul", { class: "plain-list" });
   const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
