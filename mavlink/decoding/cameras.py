@@ -1,6 +1,7 @@
 """Cameras as they describe themselves by CAMERA_INFORMATION, the requests for it, and how one differs from the planned camera.
 
-A camera component announces itself by heartbeats. ArduPilot answers for its cameras itself (AP_Camera.cpp, 4.5 and later).
+A camera component announces itself by heartbeats. ArduPilot answers for its cameras itself since 4.5 (AP_Camera_Backend.cpp, read
+2026-11); most of its drivers state the names alone, with figures of NaN or 0.
 """
 
 import math
