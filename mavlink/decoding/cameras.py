@@ -1,11 +1,11 @@
 """Cameras as they describe themselves by CAMERA_INFORMATION, the requests for it, and how one differs from the planned camera.
 
 A camera component announces itself by heartbeats. ArduPilot answers for its cameras itself since 4.5 (AP_Camera_Backend.cpp, read
-2026-11); most of its drivers state the names alone, with figures of NaN or 0.
+2026-11); most of its drivers report the names alone, with figures of NaN or 0.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -16,15 +16,17 @@ from mavlink.frames import Message
 from planning.views.camera import Camera
 
 MAX_CAMERAS = 8  # of one vehicle
-MAX_REQUESTS = 4  # of one component
-RETRY_DELAY_S = 5.0  # doubled with each request
+RETRY_DELAY_S, MAX_RETRY_DELAY_S = 5.0, 60.0  # without an answer; doubled with each request
+ASK_AGAIN_S = 120.0  # after an answer: a payload may be changed without a reboot of the autopilot
+FORGOTTEN_S = 600.0  # after the last answer
+EARLIER_VALID_S = 120.0  # what another gateway had read, after a takeover
 MIN_LENGTH_MM, MAX_FOCAL_LENGTH_MM, MAX_SENSOR_MM = 0.1, 5_000.0, 1_000.0
 MAX_RATIO = 1.05  # of lengths that count as equal: data sheets round them
 
 
 @dataclass(frozen=True, slots=True)
 class ReportedCamera:
-    """Figures that a camera states of itself; None is unknown.
+    """Figures that a camera reports of itself; None is unknown.
 
     component: that sent them. focal_length_mm: of a zoom at any of its steps.
     """
@@ -42,16 +44,17 @@ class ReportedCamera:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> "ReportedCamera":
-        return cls(**value)
+        return cls(**{name: entry for name, entry in value.items() if name in cls.__slots__})
 
     @property
-    def has_figures(self) -> bool:
-        return any(value is not None for value in (self.focal_length_mm, self.sensor_width_mm, self.sensor_height_mm, self.pixels_wide))
+    def has_sensor(self) -> bool:
+        """Whether its sensor or its pixels are known: a focal length alone tells cameras of a zoom's range not apart."""
+        return self.sensor_width_mm is not None or self.pixels_wide is not None
 
 
 @dataclass(frozen=True, slots=True)
 class CameraDifference:
-    """A figure that a camera states otherwise than planned.
+    """A figure that a camera reports otherwise than planned.
 
     figure: focal_length [mm], sensor (width and height, mm) or pixels (width and height).
     """
@@ -62,7 +65,7 @@ class CameraDifference:
 
 
 def reported_camera(message: Message) -> ReportedCamera:
-    """Return what a CAMERA_INFORMATION states. Figures that cannot be are unknown."""
+    """Return what a CAMERA_INFORMATION reports. Figures that cannot be are unknown."""
     vendor, model = _text(message.vendor_name), _text(message.model_name)
     wide, high = message.resolution_h, message.resolution_v
     width_mm, height_mm = (_length(value, MAX_SENSOR_MM) for value in (message.sensor_size_h, message.sensor_size_v))
@@ -95,49 +98,49 @@ def camera_differences(reported: ReportedCamera, planned: Camera) -> list[Camera
 @dataclass
 class _Request:
     due_s: float
-    sent: int = 0
+    delay_s: float = RETRY_DELAY_S  # until the next one, where there is no answer
 
 
 @dataclass
 class CameraReader:
-    """Asks the cameras of one vehicle for CAMERA_INFORMATION and keeps it. Times are monotonic seconds."""
+    """Asks the cameras of one vehicle for CAMERA_INFORMATION, again and again, and keeps it. Times are monotonic seconds.
 
-    reported: dict[tuple[int, int], ReportedCamera] = field(default_factory=dict)  # by component and number of its device
+    earlier: what another gateway had read, valid until EARLIER_VALID_S after began_s unless its component has answered since.
+    """
+
+    earlier: Sequence[ReportedCamera] = ()
+    began_s: float = 0.0
+    _reported: dict[tuple[int, int], tuple[ReportedCamera, float]] = field(default_factory=dict)  # by component and number of its device
     _requests: dict[int, _Request] = field(default_factory=dict)
 
     def receive(self, message: Message, now_s: float) -> None:
         kind, component = message.get_type(), message.get_srcComponent()
         if kind == "CAMERA_INFORMATION":
             key = component, message.camera_device_id
-            if key in self.reported or len(self.reported) < MAX_CAMERAS:
-                self.reported[key] = reported_camera(message)
+            if key in self._reported or len(self._reported) < MAX_CAMERAS:
+                self._reported[key] = reported_camera(message), now_s
+            if component in self._requests:
+                self._requests[component] = _Request(now_s + ASK_AGAIN_S)
         elif kind == "HEARTBEAT":
             is_ardupilot = component == AUTOPILOT and message.autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-            if is_ardupilot or message.type == mavlink.MAV_TYPE_CAMERA:
-                self._expect(component, now_s)
+            if (is_ardupilot or message.type == mavlink.MAV_TYPE_CAMERA) and len(self._requests) < MAX_CAMERAS:
+                self._requests.setdefault(component, _Request(now_s))
 
-    @property
-    def cameras(self) -> list[ReportedCamera]:
-        """Return the cameras, once where an autopilot and the camera itself have stated the same."""
-        found = {replace(camera, component=0): camera for camera in self.reported.values()}
-        return list(found.values())
-
-    def _expect(self, component: int, now_s: float) -> None:
-        if len(self._requests) < MAX_CAMERAS:
-            self._requests.setdefault(component, _Request(now_s))
+    def cameras(self, now_s: float) -> list[ReportedCamera]:
+        """Return the cameras that are there, once where an autopilot and the camera itself have reported the same."""
+        own = [camera for camera, at_s in self._reported.values() if now_s - at_s <= FORGOTTEN_S]
+        answered = {camera.component for camera in own}
+        if now_s - self.began_s <= EARLIER_VALID_S:
+            own += [camera for camera in self.earlier if camera.component not in answered]
+        return list({replace(camera, component=0): camera for camera in own}.values())
 
     def requests(self, system: int, now_s: float) -> list[Message]:
         """Return the requests that are due."""
-        known = {component for component, _ in self.reported}
-        due = [
-            component
-            for component, request in self._requests.items()
-            if component not in known and request.sent < MAX_REQUESTS and request.due_s <= now_s
-        ]
+        due = [component for component, request in self._requests.items() if request.due_s <= now_s]
         for component in due:
             request = self._requests[component]
-            request.sent += 1
-            request.due_s = now_s + RETRY_DELAY_S * 2.0 ** (request.sent - 1)
+            request.due_s = now_s + request.delay_s
+            request.delay_s = min(2.0 * request.delay_s, MAX_RETRY_DELAY_S)
         number, information = mavlink.MAV_CMD_REQUEST_MESSAGE, float(mavlink.MAVLINK_MSG_ID_CAMERA_INFORMATION)
         return [
             mavlink.MAVLink_command_long_message(system, component, number, 0, information, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

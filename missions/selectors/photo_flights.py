@@ -127,7 +127,8 @@ def _keep(key: str, flight: PhotoFlight | Reason) -> None:
 
 def planned_cameras(routes: Sequence[Route]) -> dict[int, list[Camera]]:
     """Return the cameras of the photos that each of the routes takes, by the route's key; none of a route without photos."""
-    rows = Waypoint.objects.filter(route__in=routes, target__task__has_key="views").values_list("route_id", "target__task").distinct()
+    photos = Waypoint.objects.filter(route__in=routes, target__task__has_key="views").order_by("route_id", "target_id")
+    rows = photos.values_list("route_id", "target__task").distinct()
     found: dict[int, list[Camera]] = {}
     for route, value in rows:
         task = task_from_json(value)

@@ -15,7 +15,7 @@ from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, AutopilotType
 from mavlink.commands.message_requests import MissingPhotos
 from mavlink.decoding.boots import Stamp, VehicleTime
-from mavlink.decoding.cameras import CameraReader
+from mavlink.decoding.cameras import CameraReader, ReportedCamera
 from mavlink.decoding.captures import CaptureDecoder
 from mavlink.decoding.measurement import LinkQuality
 from mavlink.decoding.report import FlownState, MeasurementDecoder, StatusText, TextCollector, is_place, is_vehicle
@@ -215,6 +215,7 @@ class Session:
         """Begin to serve with the previous gateway's state. Returns the frames that waited, for the caller to receive again."""
         waiting, self.waiting = self.waiting, deque(maxlen=self.waiting.maxlen)
         self.lease, self.held_until_s = lease, held_until_s
+        self.cameras = CameraReader([ReportedCamera.from_json(camera) for camera in lease.cameras], time.monotonic())
         self.losses = Counter(lease.losses)
         self._flight.take_up(was_in_mission=lease.mode_in_air in MISSION_MODES, mission_item=lease.mission_item)
         if not self.time.boots:
@@ -334,9 +335,7 @@ class Session:
         )
 
     def _cameras(self) -> list[dict[str, Any]]:
-        """Return what the vehicle's cameras state of themselves, or stated to the gateway before."""
-        stated = [camera.to_json() for camera in self.cameras.cameras]
-        return stated or (self.lease.cameras if self.lease else [])
+        return [camera.to_json() for camera in self.cameras.cameras(time.monotonic())]
 
     def _signing(self) -> dict[str, Any]:
         signing = self.authentication.to_json()
@@ -400,8 +399,11 @@ class Session:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None
         if self.time.boots:
             self.lists.check_boot(self.time.stream, time.monotonic())
+        boot = self.time.stream if self.time.boots else None
         stamp = self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
         self.lists.check_boot(self.time.stream, time.monotonic())
+        if boot not in (None, self.time.stream):
+            self.cameras = CameraReader()
         return stamp
 
     def _record(self, message: Message, stamp: Stamp, now_s: float) -> None:

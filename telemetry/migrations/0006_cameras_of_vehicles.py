@@ -13,6 +13,6 @@ class Migration(migrations.Migration):
         migrations.AddField(
             model_name='uavlink',
             name='cameras',
-            field=models.JSONField(blank=True, db_default=[], default=list, help_text='what its cameras state of themselves; see mavlink/decoding/cameras.py'),
+            field=models.JSONField(blank=True, db_default=[], default=list, help_text='what its cameras report of themselves; see mavlink/decoding/cameras.py'),
         ),
     ]

@@ -60,7 +60,7 @@ class UavLink(models.Model):
     )
 
     cameras = models.JSONField(
-        default=list, db_default=[], blank=True, help_text="what its cameras state of themselves; see mavlink/decoding/cameras.py"
+        default=list, db_default=[], blank=True, help_text="what its cameras report of themselves; see mavlink/decoding/cameras.py"
     )
     battery_state = models.CharField(
         max_length=20, default="", db_default="", blank=True, help_text="as the vehicle itself has it: ok, low, critical, …"

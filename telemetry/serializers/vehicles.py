@@ -75,9 +75,9 @@ class GatewayAddressSerializer(serializers.Serializer):
 
 
 class ReportedCameraSerializer(serializers.Serializer):
-    """What a camera of a UAV states of itself (CAMERA_INFORMATION of MAVLink); null is unknown."""
+    """What a camera of a UAV reports of itself (CAMERA_INFORMATION of MAVLink); null is unknown."""
 
-    component = serializers.IntegerField(help_text="of the vehicle that stated it")
+    component = serializers.IntegerField(help_text="of the vehicle that reported it")
     name = serializers.CharField(allow_blank=True, help_text="vendor and model")
     focal_length_mm = serializers.FloatField(allow_null=True, help_text="of a zoom at any of its steps")
     sensor_width_mm = serializers.FloatField(allow_null=True)

@@ -323,14 +323,14 @@ def _returns(check: ReturnCheck | None) -> Iterator[Check]:
 
 
 def _cameras(uav: Uav, link: UavLink, planned: Sequence[Camera]) -> Iterator[Check]:
-    """Compare what its cameras state of themselves with each camera of its photos; no check without photos."""
-    stated = [one for value in link.cameras if (one := ReportedCamera.from_json(value)).has_figures]
+    """Compare what its cameras report with each camera of its photos; no check without photos."""
+    reported = [one for value in link.cameras if (one := ReportedCamera.from_json(value)).has_sensor] if planned else []
     for camera in planned:
         values = {"camera": camera.name}
-        if stated and (found := min((camera_differences(one, camera) for one in stated), key=len)):
+        if reported and (found := min((camera_differences(one, camera) for one in reported), key=len)):
             words = _("Its camera is not the planned one, %(camera)s: %(differences)s. Photos may not show what was planned.")
             yield Check("camera", CheckState.WARNING, words % (values | {"differences": ", ".join(map(_difference, found))}))
-        elif stated:
+        elif reported:
             yield Check("camera", CheckState.OK, _("Camera as planned: %(camera)s") % values)
         elif uav.link == LinkKind.MAVLINK:
             yield Check("camera", CheckState.UNKNOWN, _("It does not report its camera; planned: %(camera)s.") % values)

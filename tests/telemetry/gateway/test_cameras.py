@@ -19,12 +19,12 @@ pytestmark = pytest.mark.django_db(transaction=True)
 
 
 @pytest.mark.parametrize("autopilot_type", list(SimulatedAutopilot))
-def test_what_a_camera_states_is_kept_and_told(autopilot_type: SimulatedAutopilot, uav: Uav, tmp_path: Path) -> None:
+def test_what_a_camera_reports_is_kept_and_told(autopilot_type: SimulatedAutopilot, uav: Uav, tmp_path: Path) -> None:
     port, camera = free_port(), catalogue()["dji-m30t-wide"].camera
     launch = Launch(7, HOME, autopilot_type=autopilot_type, talks_to=[("127.0.0.1", port)], camera=camera)
     with gateway_program(port, tmp_path), flying([launch], speed=1.0):
         wait_for(lambda: UavLink.objects.filter(uav=uav).exclude(cameras=[]).exists(), "the camera's figures")
-    (stated,) = client_of(a_user()).get(f"/api/v1/uavs/{uav.pk}/connection").json()["cameras"]
-    assert (stated["pixels_wide"], stated["pixels_high"]) == (camera.pixels_wide, camera.pixels_high)
-    assert stated["focal_length_mm"] == pytest.approx(camera.focal_lengths_mm[0], abs=1e-3)
-    assert stated["name"].startswith("Simulated ")
+    (reported,) = client_of(a_user()).get(f"/api/v1/uavs/{uav.pk}/connection").json()["cameras"]
+    assert (reported["pixels_wide"], reported["pixels_high"]) == (camera.pixels_wide, camera.pixels_high)
+    assert reported["focal_length_mm"] == pytest.approx(camera.focal_lengths_mm[0], abs=1e-3)
+    assert reported["name"].startswith("Simulated ")

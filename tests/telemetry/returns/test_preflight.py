@@ -323,22 +323,22 @@ def photos(person: User, tmp_path: Path) -> tuple[Mission, Uav]:
     return mission, uav
 
 
-STATED = {
+REPORTED = {
     "component": 100, "name": "DJI M30T", "focal_length_mm": CAMERA.focal_lengths_mm[-1], "sensor_width_mm": CAMERA.sensor_width_mm,
     "sensor_height_mm": CAMERA.sensor_height_mm, "pixels_wide": CAMERA.pixels_wide, "pixels_high": CAMERA.pixels_high,
 }  # fmt: skip
-WITHOUT_FIGURES = STATED | dict.fromkeys(("focal_length_mm", "sensor_width_mm", "sensor_height_mm", "pixels_wide", "pixels_high"))
+WITHOUT_FIGURES = REPORTED | dict.fromkeys(("focal_length_mm", "sensor_width_mm", "sensor_height_mm", "pixels_wide", "pixels_high"))
 
 
 def test_the_camera_of_photos_is_as_planned_another_or_not_reported(photos: tuple[Mission, Uav]) -> None:
     mission, uav = photos
-    other = STATED | {"pixels_wide": 640, "pixels_high": 512}
+    other = REPORTED | {"pixels_wide": 640, "pixels_high": 512}
     Uav.objects.filter(pk=uav.pk).update(link=LinkKind.MAVLINK)
     link = UavLink.objects.create(uav=uav)
     cases = {
-        CheckState.UNKNOWN: [[], [WITHOUT_FIGURES]],
-        CheckState.OK: [[STATED], [other, STATED]],
-        CheckState.WARNING: [[other], [other, WITHOUT_FIGURES]],
+        CheckState.UNKNOWN: [[], [WITHOUT_FIGURES], [WITHOUT_FIGURES | {"focal_length_mm": CAMERA.focal_lengths_mm[0]}]],
+        CheckState.OK: [[REPORTED], [other, REPORTED]],
+        CheckState.WARNING: [[other], [other, WITHOUT_FIGURES | {"focal_length_mm": CAMERA.focal_lengths_mm[0]}]],
     }
     for state, reports in cases.items():
         for cameras in reports:
@@ -353,5 +353,5 @@ def test_the_camera_of_photos_is_as_planned_another_or_not_reported(photos: tupl
 
 def test_without_photos_no_camera_is_checked(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern_, _kite = two
-    UavLink.objects.create(uav=tern_, cameras=[STATED])
+    UavLink.objects.create(uav=tern_, cameras=[REPORTED])
     assert "camera" not in states(checks(mission), tern_)
