@@ -2,9 +2,9 @@
 
 from typing import Any
 
-Group = tuple[str, str]  # title and description
+TitleAndDescription = tuple[str, str]
 
-HEADINGS: dict[str, dict[str, Group]] = {
+HEADINGS: dict[str, dict[str, TitleAndDescription]] = {
     "Planning": {
         "missions": ("Missions", "Create, plan, rehearse, approve, upload and close missions; their results, logs and history."),
         "plans": ("Plans without a mission", "Plan routes without storing them, with the reasons for routes and unassigned targets."),
@@ -15,7 +15,7 @@ HEADINGS: dict[str, dict[str, Group]] = {
         "camera-catalogue": ("Camera catalogue", "Inspection cameras with their figures and sources."),
     },
     "Flying": {
-        "live": ("Live", "What flies now, for clients that poll; `/ws/live` sends the same as it changes."),
+        "live": ("Live", "What flies now, for clients that poll; the websocket /ws/live sends the same as it changes."),
         "alerts": ("Alerts", "List, acknowledge, note and close alerts."),
         "commands": ("Commands", "The delivery state of a command to a UAV."),
         "planned-starts": ("Planned starts", "Missions whose UAVs are started in planned order."),

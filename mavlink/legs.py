@@ -94,7 +94,8 @@ class BesideLeg:
 def beside_leg(load: FlightLoad, item: int, take_off: LonLat, position: LonLat, relative_m: float) -> BesideLeg | None:
     """Return the offset of a vehicle at `position`, `relative_m` above home, from the leg to the mission item `item`.
 
-    The leg begins at the previous item with a position, else at the take-off. Returns None if no such item is left.
+    The leg begins at the previous item with a position, else at the take-off. Returns None if no such item is left. The way to the leg is
+    unchecked.
     """
     flown = [(place, position_of(one), one.altitude_m) for place, one in enumerate(load.mission) if one.command in FLOWN]
     ahead = next((number for number, (place, _, _) in enumerate(flown) if place >= item), None)

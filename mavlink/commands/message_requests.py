@@ -8,6 +8,12 @@ from mavlink.addressing import AUTOPILOT, Addressing, Message, Messages
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
 
+MAX_GAP = 100  # indices; a larger step is a camera that counts anew
+MAX_MISSING = 200
+MAX_REQUESTS = 4  # of one photo
+RETRY_DELAY_S = 2.0  # doubled with each request
+MAX_AT_ONCE = 5
+
 
 class HomeReading:
     """Requests the home position until it arrives. `outcome` is whether it did. `state` must receive each message first."""
@@ -47,13 +53,6 @@ class HomeReading:
         ]
 
 
-MAX_GAP = 100  # indices; a larger step is a camera that counts anew
-MAX_MISSING = 200
-MAX_REQUESTS = 4  # of one photo
-RETRY_DELAY_S = 2.0  # doubled with each request
-MAX_AT_ONCE = 5
-
-
 @dataclass
 class _Missing:
     due_s: float
@@ -62,7 +61,10 @@ class _Missing:
 
 @dataclass
 class MissingPhotos:
-    """The lost photos of one vehicle's cameras. Autopilots keep none of theirs. Times are monotonic seconds."""
+    """The lost photos of one vehicle's cameras. Autopilots keep none of theirs. Times are monotonic seconds.
+
+    A camera sends CAMERA_IMAGE_CAPTURED again for MAV_CMD_REQUEST_MESSAGE with the index as parameter 2 (MAVLink, camera protocol).
+    """
 
     _next: dict[int, int] = field(default_factory=dict)  # index by component
     _missing: dict[tuple[int, int], _Missing] = field(default_factory=dict)

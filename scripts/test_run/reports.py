@@ -13,7 +13,7 @@ from pathlib import Path
 
 FORBIDDEN_SKIPS = 8  # exit code, beside those of pytest (0 to 5)
 NO_TESTS = 5  # pytest's own exit code
-COSTLIEST = 10  # tests that the summary names
+MAX_COSTLY = 10  # tests that the summary names
 KINDS = ("unit", "database", "browser", "javascript")
 TAP_SKIP = re.compile(r"^\s*(?:not )?ok \d+ - (?P<name>.*) # (?P<kind>SKIP|TOD[O])\b ?(?P<reason>.*)$", re.MULTILINE)
 TAP_TOTAL = re.compile(r"^# (?P<name>pass|fail) (?P<number>\d+)$", re.MULTILINE)
@@ -80,5 +80,5 @@ def summary(reports: Iterable[Report]) -> list[str]:
     cpu_s = {name: used_s for report in reports for name, used_s in report.cpu_s.items()}
     if cpu_s:
         lines.append(f"Processor time of tests and the programs they end: {sum(cpu_s.values()):,.0f} s")
-        lines += (f"  {used_s:5.1f}  {name}" for name, used_s in sorted(cpu_s.items(), key=lambda pair: -pair[1])[:COSTLIEST])
+        lines += (f"  {used_s:5.1f}  {name}" for name, used_s in sorted(cpu_s.items(), key=lambda pair: -pair[1])[:MAX_COSTLY])
     return lines

@@ -45,11 +45,9 @@ FEW_FRAMES = """
         const waiting = new Map();
         let [number, drawn_ms, isAsked] = [0, -Infinity, false];
         const draw = (now_ms) => {
-            const callbacks = [...waiting.values()];
             [drawn_ms, isAsked] = [performance.now(), false];
-            waiting.clear();
-            for (const callback of callbacks)
-                try { callback(now_ms); } catch (error) { reportError(error); }
+            for (const [asked, callback] of [...waiting]) // what is asked for meanwhile is of the next frame
+                if (waiting.delete(asked)) try { callback(now_ms); } catch (error) { reportError(error); }
         };
         window.requestAnimationFrame = (callback) => {
             waiting.set(++number, callback);

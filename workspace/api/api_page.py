@@ -46,10 +46,8 @@ class ApiPage(OpenPage):
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         server = self.request.build_absolute_uri("/").rstrip("/")
-        found = headings()
         return super().get_context_data(**kwargs) | {
-            "headings": found,
-            "operation_count": sum(len(group.operations) for heading in found for group in heading.groups),
+            "headings": headings(),
             "server": server,
             "websocket_server": server.replace("http", "ws", 1),
         }

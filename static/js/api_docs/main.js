@@ -82,8 +82,12 @@ async function showDetails(operation) {
     );
     const way = ways.find(({ operationId }) => operationId === operation.id);
     if (way) place.replaceChildren(operationDetails(api, way.path, way.method));
+    else place.replaceChildren(h("p", { class: "notice warning" }, t("The API has changed. Load this page again.")));
   } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
+    if (!(error instanceof ApiError)) {
+      place.replaceChildren();
+      throw error;
+    }
     const again = h("button", { type: "button", class: "text-button" }, t("Try again"));
     again.addEventListener("click", () => {
       place.replaceChildren();
@@ -102,7 +106,7 @@ async function showDetails(operation) {
 
 /** Open what the address names, and go there. */
 function openNamed() {
-  const named = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  const named = document.getElementById(location.hash.slice(1)); // names of operations need no escapes
   if (!(named instanceof HTMLDetailsElement) || !reference.contains(named)) return;
   if (filter.value && named.closest("[hidden]")) {
     filter.value = "";

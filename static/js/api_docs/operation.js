@@ -194,7 +194,9 @@ function answerRow(api, status, { description, content = {}, headers = {} }) {
       "div",
       { class: "api-field" },
       h("code", { class: "api-name" }, status),
-      h("span", { class: "api-type", lang: "en" }, types.length ? types.join(", ") : t("no body")),
+      types.length
+        ? h("span", { class: "api-type", lang: "en" }, types.join(", "))
+        : h("span", { class: "api-type" }, t("no body")),
     ),
     description && h("p", { lang: "en" }, inline(description)),
     names.length > 0 &&

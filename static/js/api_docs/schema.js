@@ -59,7 +59,7 @@ const OF_FORMAT = {
   email: "name@example.org",
   uri: "https://example.org/",
 };
-const SO_LARGE_THAT_IT_SAYS_NOTHING = 999_999_999; // of ids
+const MAX_SHOWN_LIMIT = 999_999_999; // of ids
 /** In the order in which they are tried where a pattern is stated. */
 const OF_PATTERNS = ["text", "1", "a", HASH, "00", "Europe/Berlin"];
 
@@ -97,7 +97,7 @@ function plainType(api, schema) {
 function limitsOf({ minimum, maximum, exclusiveMinimum, minLength, maxLength, minItems, maxItems }) {
   /** @param {number | undefined} least @param {number | undefined} most @param {string} unit @param {string} [sign] */
   const range = (least, most, unit, sign = "≥") => {
-    const isBounded = most !== undefined && most < SO_LARGE_THAT_IT_SAYS_NOTHING;
+    const isBounded = most !== undefined && most < MAX_SHOWN_LIMIT;
     if (least === undefined) return isBounded ? [`≤ ${most}${unit}`] : [];
     if (!isBounded) return [`${sign} ${least}${unit}`];
     if (least === most) return [`${least}${unit}`];

@@ -1,6 +1,6 @@
 /** Adding and editing one row of the fleet: the form, the pin on the map, unsaved input, and conflicts with other users. */
 
-import { ApiError, patch, post } from "../api.js";
+import { ApiError, get, patch, post } from "../api.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { blankBody, bodyOf } from "./bodies.js";
@@ -154,8 +154,11 @@ export class Editing {
     await this.start(row, kept);
   }
 
-  /** Edit a type with one camera more. @param {FleetType} type @param {Figures} camera */
-  async addCamera(type, camera) {
+  /** Edit a type, as it is stored now, with one camera more. @param {number} id @param {Figures} camera */
+  async addCamera(id, camera) {
+    const now = this.#context.moment();
+    const { data: type } = /** @type {Answer<FleetType>} */ (await get(`${KINDS.types.path}/${id}`));
+    if (now !== this.#context.moment()) return;
     const body = /** @type {Body} */ ({ ...bodyOf("types", type), cameras: [...type.cameras, camera] });
     this.#context.turnTo("types");
     this.#context.store.update({ chosen: { tab: "types", id: type.id } });

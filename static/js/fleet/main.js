@@ -73,7 +73,7 @@ const panel = mountPanel({
     failed: notify,
     showUavs,
     typeOf: (uav) => store.state.types?.find(({ id }) => id === uav.type),
-    addCamera: (type, camera) => editing.addCamera(type, camera),
+    addCamera: (type, camera) => editing.addCamera(type, camera).catch(notify),
   },
 });
 const editing = new Editing({

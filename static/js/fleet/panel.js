@@ -29,7 +29,7 @@ import { MISSION_STATES, missingList, stateChip } from "./words.js";
  * @property {(error: unknown) => void} failed
  * @property {(tab: Tab, id: number) => unknown} showUavs
  * @property {(uav: Uav) => FleetType | undefined} typeOf
- * @property {(type: FleetType, camera: Figures & { name: string }) => unknown} addCamera
+ * @property {(type: number, camera: Figures) => unknown} addCamera
  */
 /** @typedef {{ canPlan: boolean, isAdministrator: boolean, acts: PanelActs }} How */
 /** @typedef {ReturnType<typeof mountPanel>} Panel */
@@ -86,20 +86,25 @@ async function fillMissions(list, none, address) {
 }
 
 /**
- * For each camera that the UAV reports in full and its type lacks, a button that adds it to the type.
+ * For each camera that the UAV reports in full and its type lacks, a button that adds it to the type; drawn anew where these change.
  *
+ * @param {HTMLElement} place
  * @param {Uav} uav
- * @param {UavConnection} connection
  * @param {PanelActs} acts
  */
-function newCameraButtons(uav, { cameras }, acts) {
-  const type = acts.typeOf(uav);
-  if (!type) return [];
-  return camerasToAdd(cameras, type).map((camera) =>
-    button("camera", t("Add {camera} to {type}", { camera: camera.name, type: type.name }), () =>
-      acts.addCamera(type, camera),
-    ),
-  );
+function mountNewCameras(place, uav, acts) {
+  let shown = "";
+  return (/** @type {UavConnection} */ { cameras }) => {
+    const type = acts.typeOf(uav);
+    const found = type ? camerasToAdd(cameras, type) : [];
+    if (!type || JSON.stringify(found) === shown) return;
+    shown = JSON.stringify(found);
+    const words = (/** @type {string} */ camera) => t("Add {camera} to {type}", { camera, type: type.name });
+    setChildren(
+      place,
+      found.map((camera) => button("camera", words(camera.name), () => acts.addCamera(type.id, camera))),
+    );
+  };
 }
 
 /** What there is below the facts of a UAV; it fills itself. @param {Uav} uav @param {How} how @returns {Child} */
@@ -112,10 +117,11 @@ function partsOfUav(uav, { canPlan, isAdministrator, acts }) {
   const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
   /** @type {ReturnType<typeof mountConnect> | null} */
   let showState = null;
+  const showCameras = canPlan ? mountNewCameras(cameras, uav, acts) : () => {};
   mountConnection(connection, uav, (answer) => {
     showState ??= mountConnect(connect, uav, answer);
     showState(answer);
-    if (canPlan && !cameras.hasChildNodes()) cameras.append(...newCameraButtons(uav, answer, acts));
+    showCameras(answer);
   }).catch(acts.failed);
   mountCredentials(credentials, uav, { canPlan, isAdministrator, onChange: acts.refresh }).catch(acts.failed);
   fillMissions(missions, none, `/uavs/${uav.id}/missions`).catch(acts.failed);

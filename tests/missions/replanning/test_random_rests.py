@@ -32,7 +32,7 @@ UAVS, TARGETS, NEAR_DEG = 3, 9, 0.03
 
 
 @pytest.mark.parametrize(
-    ("seeds", "most_offers"), [pytest.param(range(8, 14), 2, id="few"), pytest.param(range(60), 60, id="many", marks=pytest.mark.long)]
+    ("seeds", "most_offers"), [pytest.param(range(8, 20), 2, id="few"), pytest.param(range(60), 60, id="many", marks=pytest.mark.long)]
 )
 @pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", *long("columbus-ohio.osm.pbf")])
 def test_continued_routes_cross_no_zone_and_lose_no_target(
