@@ -235,6 +235,7 @@ class Visitor:
     site: Site
     contexts: ContextPool
     complaints: list[str] = field(default_factory=list)
+    complained_of: list[str] = field(default_factory=list)  # addresses of the console's messages
     requests_outside: list[str] = field(default_factory=list)
     taken: list[tuple[BrowserContext, bool]] = field(default_factory=list)
     own: list[BrowserContext] = field(default_factory=list)
@@ -303,6 +304,7 @@ class Visitor:
     def _received(self, message: ConsoleMessage) -> None:
         if message.type == "error" or (message.type == "warning" and not any(words in message.text for words in NO_COMPLAINTS)):
             self.complaints.append(message.text)
+            self.complained_of.append(str(message.location.get("url", "")))
 
     def _asked(self, url: str) -> None:
         if not url.startswith((self.site.address, "data:", "blob:", "about:")):
@@ -319,7 +321,7 @@ def visitor(site: Site, contexts: ContextPool) -> Iterator[Visitor]:
     a_user = Visitor(site, contexts)
     yield a_user
     a_user.leaves()
-    assert a_user.complaints == []
+    assert a_user.complaints == [], a_user.complained_of
     assert a_user.requests_outside == []
 
 

@@ -82,6 +82,7 @@ def test_a_mission_is_planned_and_saved_with_the_keyboard_alone(visitor: Visitor
     page.keyboard.press("Tab")
     page.keyboard.press("Tab")
     expect(dialog.get_by_label("Type")).to_be_focused()
+    expect(dialog.get_by_role("option", name="Unlimited")).to_be_attached()  # the types come after the dialog
     page.keyboard.type("Unl")
     expect(dialog.get_by_label("Type")).to_have_value(f"{unlimited}")
     page.keyboard.press("Shift+Tab")
