@@ -8,17 +8,16 @@ import io
 import json
 import logging
 import os
-import re
 import runpy
 import sys
 import threading
 import warnings
-from collections.abc import Callable
 from datetime import UTC, datetime
 from types import TracebackType
 from typing import Any, TextIO
 
 from operation.log_context import ABOUT_REQUEST, FIELDS, facts
+from operation.redaction import without_secrets
 
 IN_ONE_LINE = {code: f"\\x{code:02x}" for code in (*range(32), 127, 0x85, 0x2028, 0x2029)} | {9: "\\t", 10: "\\n", 13: "\\r"}
 MAX_LINE_LENGTH = 100_000  # characters; an endless line is cut
@@ -181,33 +180,3 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
-
-
-HIDDEN = "..."
-
-# Tokens of users and UAVs begin with spw_ and spu_; MAVLink's signing keys are 64 hexadecimal digits behind a word for them.
-_RULES: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = (
-    (re.compile(r"(/(?:new-password|invitation|email-address)/)[^\s\"'?]+"), r"\1" + HIDDEN),
-    (re.compile(r"(/single-sign-on/callback\?)[^\s\"']+"), r"\1" + HIDDEN),
-    (re.compile(r"(?i)\b(bearer|basic)\s+[A-Za-z0-9._~+/=-]{8,}"), r"\1 " + HIDDEN),
-    (re.compile(r"\b(sp[wu]_)[A-Za-z0-9_-]{8,}"), r"\1" + HIDDEN),
-    (re.compile(r"(?i)\b((?:sessionid|csrftoken|spanwise_known)\s*[=:]\s*)[^\s;,\"']+"), r"\1" + HIDDEN),
-    (re.compile(r"(://[^\s:/@]*:)[^\s@/]+(@)"), r"\1" + HIDDEN + r"\2"),
-    (
-        re.compile(r"(?i)(['\"]?\b[\w-]*(?:password|passwd|secret|token|signing_?key|api_?key|csrfmiddlewaretoken)\w*['\"]?\s*[=:]\s*)"
-                   r"(?:'[^']*'|\"[^\"]*\"|[^\s,;&)}\]]+)"),
-        r"\1" + HIDDEN,
-    ),
-)  # fmt: skip
-_HINT = re.compile(
-    r"(?i)(?:new-password|invitation|email-address)/|callback\?|sp[wu]_|bearer|basic|sessionid|csrf|spanwise_known|://|passw|secret|token|key"
-)
-
-
-def without_secrets(text: str) -> str:
-    """Return the text without recognisable secrets."""
-    if _HINT.search(text) is None:
-        return text
-    for pattern, instead in _RULES:
-        text = pattern.sub(instead, text)
-    return text

@@ -17,8 +17,9 @@ from django.test import Client, override_settings
 from django.utils import timezone
 
 from config.environment import log_settings
-from operation.json_lines import JsonFormatter, LineFormatter, without_secrets
+from operation.json_lines import JsonFormatter, LineFormatter
 from operation.log_context import about
+from operation.redaction import without_secrets
 from tests.accounts.users import a_user, client_of
 from tests.telemetry.links.uav_clients import LINK, linked_uav, report
 from workspace.api_tokens import create_api_token

@@ -50,7 +50,7 @@ OFTEN, SELDOM = Twice(flown_share=0.5, by_hand_every=8), Twice(flown_share=0.2, 
 @pytest.mark.parametrize(
     ("file_name", "missions", "seed"),
     [
-        ("quillmoor.osm.pbf", 40, 5),
+        ("quillmoor.osm.pbf", 70, 5),
         pytest.param("quillmoor.osm.pbf", 200, 2, marks=pytest.mark.long),
         *(pytest.param(name, 200, 1, marks=pytest.mark.long) for name in ("elme-valley.osm.pbf", *REAL_REGIONS)),
     ],
