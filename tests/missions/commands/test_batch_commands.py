@@ -118,7 +118,9 @@ def test_an_abort_of_one_mission_leaves_the_others_uavs_untouched(two: Any, clie
     assert kinds_of(*second) == []
 
 
-def test_a_route_that_is_planned_and_not_sent_does_not_take_its_uav_from_the_mission_that_it_flies(here: World, person: User) -> None:
+def test_a_route_that_is_planned_and_not_sent_does_not_take_its_uav_from_the_mission_that_it_flies(
+    two: Any, here: World, person: User
+) -> None:
     """South plans Gull and Wren and is sent to Gull alone; Wren flies North, which was sent before."""
     gull, wren = uavs = fleet("Gull", "Wren")
     south, _approval = approved(person, uavs, here.towers[1:3], name="South")
@@ -248,7 +250,7 @@ def test_another_organisations_missions_and_uavs_are_not_reached(two: Any, perso
     assert kinds_of(foreign, *second) == []
 
 
-def test_a_mission_that_is_not_on_its_way_has_nobody_to_command(here: World, person: User, client: Client) -> None:
+def test_a_mission_that_is_not_on_its_way_has_nobody_to_command(two: Any, here: World, person: User, client: Client) -> None:
     uavs = fleet("Gull")
     mission, _approval = approved(person, uavs, here.towers[:1])
     flies(*uavs)
