@@ -6384,9 +6384,9 @@ export interface components {
             is_armed?: boolean | null;
             is_in_air?: boolean | null;
         };
-        /** @description What a camera of a UAV states of itself (CAMERA_INFORMATION of MAVLink); null is unknown. */
+        /** @description What a camera of a UAV reports of itself (CAMERA_INFORMATION of MAVLink); null is unknown. */
         ReportedCamera: {
-            /** @description of the vehicle that stated it */
+            /** @description of the vehicle that reported it */
             component: number;
             /** @description vendor and model */
             name: string;
