@@ -140,4 +140,5 @@ def test_a_base_map_that_cannot_be_reached_is_said_once_and_asked_for_no_more(vi
     page.get_by_role("radio", name="Map", exact=True).check()
     expect(message).to_be_visible()
     assert len(asked) > before
+    wait_for_map(page)  # all its tiles are refused by then
     visitor.complaints[:] = [complaint for complaint in visitor.complaints if "ERR_FAILED" not in complaint]  # the tiles
