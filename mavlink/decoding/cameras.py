@@ -48,7 +48,7 @@ class ReportedCamera:
 
     @property
     def has_sensor(self) -> bool:
-        """Whether its sensor or its pixels are known: a focal length alone tells cameras of a zoom's range not apart."""
+        """Whether its sensor or its pixels are known. A focal length alone does not tell cameras apart."""
         return self.sensor_width_mm is not None or self.pixels_wide is not None
 
 
@@ -65,7 +65,7 @@ class CameraDifference:
 
 
 def reported_camera(message: Message) -> ReportedCamera:
-    """Return what a CAMERA_INFORMATION reports. Figures that cannot be are unknown."""
+    """Return the camera that a CAMERA_INFORMATION describes. Impossible figures are unknown."""
     vendor, model = _text(message.vendor_name), _text(message.model_name)
     wide, high = message.resolution_h, message.resolution_v
     width_mm, height_mm = (_length(value, MAX_SENSOR_MM) for value in (message.sensor_size_h, message.sensor_size_v))
@@ -103,7 +103,7 @@ class _Request:
 
 @dataclass
 class CameraReader:
-    """Asks the cameras of one vehicle for CAMERA_INFORMATION, again and again, and keeps it. Times are monotonic seconds.
+    """Requests CAMERA_INFORMATION of one vehicle's cameras periodically and keeps the answers. Times are monotonic seconds.
 
     earlier: what another gateway had read, valid until EARLIER_VALID_S after began_s unless its component has answered since.
     """
@@ -127,7 +127,7 @@ class CameraReader:
                 self._requests.setdefault(component, _Request(now_s))
 
     def cameras(self, now_s: float) -> list[ReportedCamera]:
-        """Return the cameras that are there, once where an autopilot and the camera itself have reported the same."""
+        """Return the cameras that still answer, once where an autopilot and the camera itself have reported the same."""
         own = [camera for camera, at_s in self._reported.values() if now_s - at_s <= FORGOTTEN_S]
         answered = {camera.component for camera in own}
         if now_s - self.began_s <= EARLIER_VALID_S:
