@@ -6401,6 +6401,8 @@ export interface components {
             sensor_height_mm: number | null;
             pixels_wide: number | null;
             pixels_high: number | null;
+            /** @description whether the UAV's type has a camera from whose figures none of these differ */
+            is_of_type: boolean;
         };
         ReportedResult: {
             uav: number;

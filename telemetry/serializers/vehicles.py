@@ -3,10 +3,12 @@
 from datetime import datetime
 from typing import Any
 
+from mavlink.decoding.cameras import ReportedCamera, camera_differences
 from mavlink.vehicle_class import type_name
 from missions.fields import PositionField
 from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
+from planning.views.camera import camera_from_json
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
 from telemetry.services.links.approved_vehicles import connection_warnings
 from telemetry.services.links.onboard_lists import Doubt
@@ -84,6 +86,7 @@ class ReportedCameraSerializer(serializers.Serializer):
     sensor_height_mm = serializers.FloatField(allow_null=True)
     pixels_wide = serializers.IntegerField(allow_null=True)
     pixels_high = serializers.IntegerField(allow_null=True)
+    is_of_type = serializers.BooleanField(help_text="whether the UAV's type has a camera from whose figures none of these differ")
 
 
 class UavConnectionSerializer(serializers.Serializer):
@@ -117,6 +120,14 @@ class UavConnectionSerializer(serializers.Serializer):
     server_time = serializers.DateTimeField(help_text="to tell an age by, whatever the reader's clock says")
 
 
+def _cameras_json(uav: Uav, link: UavLink) -> list[dict[str, Any]]:
+    of_type = [camera_from_json(value) for value in uav.uav_type.cameras] if link.cameras and uav.uav_type else []
+    cameras = [ReportedCamera.from_json(value) for value in link.cameras]
+    return [
+        one.to_json() | {"is_of_type": one.has_sensor and any(not camera_differences(one, camera) for camera in of_type)} for one in cameras
+    ]
+
+
 def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
     by = None if link.last_message_at is None else LinkKind.HTTP if link.address.startswith("http ") else LinkKind.MAVLINK
     return {
@@ -140,6 +151,6 @@ def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
         "loaded_flight": link.loaded_flight,
         "loaded_read_at": link.loaded_read_at,
         "loaded_doubt": link.loaded_doubt,
-        "cameras": link.cameras,
+        "cameras": _cameras_json(uav, link),
         "server_time": now,
     }

@@ -7,24 +7,10 @@ import { focalText, pixelsText, reachText } from "../cameras/words.js";
 import { h, setChildren } from "../dom.js";
 import { t } from "../text.js";
 
-/** @import { Camera, CatalogueCamera, ReportedCamera } from "../api_types.d.ts" */
+/** @import { CatalogueCamera, ReportedCamera } from "../api_types.d.ts" */
 /** @import { FleetType } from "./types.d.ts" */
 
 /** @typedef {{ [Figure in keyof ReportedCamera]: NonNullable<ReportedCamera[Figure]> }} Reported a camera with all figures */
-
-const MAX_RATIO = 1.05; // of lengths that count as equal, as in mavlink/decoding/cameras.py
-
-/** @param {number} one @param {number} other */
-const isAlike = (one, other) => Math.max(one, other) <= MAX_RATIO * Math.min(one, other);
-
-/** @param {Camera} known @param {Reported} reported */
-const isSame = (known, reported) =>
-  known.pixels_wide === reported.pixels_wide &&
-  known.pixels_high === reported.pixels_high &&
-  isAlike(known.sensor_width_mm, reported.sensor_width_mm) &&
-  isAlike(known.sensor_height_mm, reported.sensor_height_mm) &&
-  known.focal_lengths_mm[0] <= MAX_RATIO * reported.focal_length_mm &&
-  reported.focal_length_mm <= MAX_RATIO * known.focal_lengths_mm[known.focal_lengths_mm.length - 1];
 
 /** "Z30", or "Z30 (2)" where that is taken. @param {string} name @param {Set<string>} taken in lower case */
 function freeName(name, taken) {
@@ -34,7 +20,7 @@ function freeName(name, taken) {
 }
 
 /**
- * The cameras that a UAV of the type reports with all figures, and whose figures the type does not have yet.
+ * The cameras that a UAV of the type reports with all figures, and that are not of the type yet.
  *
  * @param {readonly ReportedCamera[]} reported
  * @param {Pick<FleetType, "cameras">} type
@@ -42,10 +28,11 @@ function freeName(name, taken) {
 export function camerasToAdd(reported, { cameras }) {
   const taken = new Set(cameras.map(({ name }) => name.toLowerCase()));
   const whole = /** @type {Reported[]} */ (
-    reported.filter((own) => own.name && own.focal_length_mm && own.sensor_width_mm && own.pixels_wide)
+    reported.filter(
+      (own) => !own.is_of_type && own.name && own.focal_length_mm && own.sensor_width_mm && own.pixels_wide,
+    )
   );
-  const missing = whole.filter((own) => !cameras.some((known) => isSame(known, own)));
-  return missing.slice(0, MAX_CAMERAS - cameras.length).map((own) => {
+  return whole.slice(0, MAX_CAMERAS - cameras.length).map((own) => {
     const { focal_length_mm, sensor_width_mm, sensor_height_mm, pixels_wide, pixels_high } = own;
     const name = freeName(own.name, taken);
     taken.add(name.toLowerCase());

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from missions.models import Uav
+from missions.models import Uav, UavType
+from planning.views.camera import camera_to_json
 from planning.views.catalogue import catalogue
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
@@ -27,4 +28,7 @@ def test_what_a_camera_reports_is_kept_and_told(autopilot_type: SimulatedAutopil
     (reported,) = client_of(a_user()).get(f"/api/v1/uavs/{uav.pk}/connection").json()["cameras"]
     assert (reported["pixels_wide"], reported["pixels_high"]) == (camera.pixels_wide, camera.pixels_high)
     assert reported["focal_length_mm"] == pytest.approx(camera.focal_lengths_mm[0], abs=1e-3)
-    assert reported["name"].startswith("Simulated ")
+    assert reported["name"].startswith("Simulated ") and not reported["is_of_type"]
+    uav.uav_type = UavType.objects.create(organisation=uav.organisation, name="Wide", cameras=[camera_to_json(camera)])
+    uav.save()
+    assert client_of(a_user()).get(f"/api/v1/uavs/{uav.pk}/connection").json()["cameras"][0]["is_of_type"]
