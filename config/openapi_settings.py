@@ -34,7 +34,7 @@ def openapi_settings() -> dict[str, Any]:
             "DataIssueKind": "inspection.models.DataIssueKind",
             "WaypointKind": "missions.models.WAYPOINT_KINDS",
             "TaskKind": ["look", "photo", "hold"],
-            "ViewPattern": ["detail", "overview"],
+            "ViewPattern": ["detail", "overview", "spans"],
             "NotCountedReason": ["failed", "position", "height", "attitude", "tilted", "far"],
             "HeightSource": ["tag", "line", "assumed"],
             "DaylightEvent": "inspection.zones.schedule.EVENTS",

@@ -27,6 +27,7 @@ DEFAULT_HOLD_S = {TaskKind.LOOK: 5.0, TaskKind.PHOTO: 10.0, TaskKind.HOLD: 30.0}
 class ViewPattern(StrEnum):
     DETAIL = "detail"  # every part, at the ground sample distance
     OVERVIEW = "overview"  # the whole, from four sides
+    SPANS = "spans"  # the wires up to the middle of each span, from both sides
 
 
 OVERVIEW_GSD_M = 0.05  # what is coarser counts as not shown by an overview

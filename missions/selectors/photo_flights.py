@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
-import numpy as np
 from django.conf import settings
 from django.core.cache import cache
 
@@ -24,7 +23,7 @@ from planning.views.detail_views import TooManyPhotos
 from planning.views.limits import DetailRules
 from planning.views.photo_flight import GroundUnknown, PhotoFlight, photo_flight
 from planning.views.view_flight import NoWay
-from planning.views.view_plan import ViewPlan, ViewSpeeds, detail_plan, overview_plan
+from planning.views.view_plan import ViewPlan, ViewSpeeds, detail_plan, overview_plan, spans_plan
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.jobs.planning_lock import hold_planning_lock
 
@@ -41,10 +40,12 @@ class NotATower(Exception):
 
 def planned_views(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ViewPlan]:
     """Return the site of a tower and its photos. Raises NotATower, TooManyPhotos or NoWay."""
-    found = tower_on_map(asset, views.min_height_m, float(np.linalg.norm(views.camera.offset_m)))
+    found = tower_on_map(asset, views)
     if found is None:
         raise NotATower
     with hold_planning_lock():
+        if views.pattern is ViewPattern.SPANS:
+            return found, spans_plan(found.site, views.camera, views.gsd_m, ViewSpeeds())
         if views.pattern is ViewPattern.OVERVIEW:
             return found, overview_plan(found.site, views.camera, views.gsd_m, ViewSpeeds())
         return found, detail_plan(found.site, views.camera, DetailRules(views.gsd_m), ViewSpeeds())

@@ -16,12 +16,16 @@ from inspection.scene.overhead import Overhead
 from inspection.selectors.assets import Box, area_of
 from inspection.selectors.scene import overhead_in, supports_and_spans
 from inspection.selectors.terrain import ground_heights_m, has_terrain
+from planning.task import ViewPattern, ViewsRequest
 from planning.views.ground_band import GroundBand
-from planning.views.keep_out import Obstacle
+from planning.views.keep_out import SITE_M, Obstacle
+from planning.views.proof import REACH_M
 from planning.views.site import StandingSupport, TowerSite, tower_site
 from planning.views.solids import FloatArray
+from planning.views.span_views import MAX_HALF_SPAN_M
 
-AROUND_M = 200.0  # of the tower: supports, wires and other assets that a detail inspection may come near
+BEYOND_M = 50.0  # of what a flight may come near: supports, wires and other assets are read up to there
+GROUND_BEYOND_M = 30.0  # of the same: the ground
 WIRES_BESIDE_M = 15.0  # of lines without drawn spans: from their axis to the outermost wire, swing included
 TRACK_BESIDE_M = 6.0  # of railways: half of their width with masts
 OTHER_TOP_M: dict[str, float] = {
@@ -44,16 +48,21 @@ class TowerOnMap:
     ground_m: Callable[[FloatArray], FloatArray]
 
 
-def tower_on_map(asset: Asset, min_height_m: float, lens_offset_m: float = 0.0) -> TowerOnMap | None:
-    """Return the surroundings of a tower; None where it is no support of the network.
+def tower_on_map(asset: Asset, views: ViewsRequest) -> TowerOnMap | None:
+    """Return the surroundings of a tower, as far as such photos may be taken; None where it is no support of the network.
 
-    min_height_m: above the ground, which is kept everywhere, as is the greatest height of the flight rules.
+    The least height of the photos and the greatest of the flight rules are kept everywhere.
     """
-    frame = LocalFrame.around(*asset.centre.coords)
-    corners = frame.to_degrees(np.array([[-AROUND_M, -AROUND_M], [AROUND_M, AROUND_M]]))
-    box: Box = (*corners[0].tolist(), *corners[1].tolist())
+    min_height_m, lens_offset_m = views.min_height_m, float(np.linalg.norm(views.camera.offset_m))
+    around_m, box = SITE_M, _box(asset, SITE_M)
     found = overhead_in(box)
     own = np.flatnonzero(found.support == asset.pk)
+    if len(own) and views.pattern is ViewPattern.SPANS:
+        spans_m = found.length_m[(found.span == own[0]).any(axis=1)]
+        around_m = max(SITE_M, min(float(spans_m.max(initial=0.0)) / 2.0, MAX_HALF_SPAN_M) + REACH_M)
+        box = _box(asset, around_m)
+        found = overhead_in(box)
+        own = np.flatnonzero(found.support == asset.pk)
     if not len(own):
         return None
     frame = LocalFrame.around(*found.position[own[0]].tolist())
@@ -64,20 +73,30 @@ def tower_on_map(asset: Asset, min_height_m: float, lens_offset_m: float = 0.0) 
     def ground_m(places: FloatArray) -> FloatArray:
         return ground_heights_m(frame.to_degrees(places)) - base_m if is_known else np.full(len(places), np.nan)
 
-    band = GroundBand.over(ground_m, min_height_m, max_height_m) if is_known else GroundBand.level(min_height_m, max_height_m)
-    site = _site(found, int(own[0]), frame, np.nan_to_num(ground_m(frame.to_metres(found.position))), band, box, lens_offset_m)
+    band = GroundBand.level(min_height_m, max_height_m)
+    if is_known:
+        band = GroundBand.over(ground_m, min_height_m, max_height_m, around_m + GROUND_BEYOND_M)
+    feet_m = np.nan_to_num(ground_m(frame.to_metres(found.position)))
+    others = list(_others(box, frame, float(band.low_m.max())))
+    supports, spans = _stood(found, int(own[0]), frame, feet_m)
+    site = tower_site(supports, spans, settings.CLEARANCE_RULES, band, others, lens_offset_m, around_m)
     return TowerOnMap(site, frame, base_m if is_known else None, ground_m)
 
 
-def _site(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray, band: GroundBand, box: Box, lens_offset_m: float) -> TowerSite:
+def _box(asset: Asset, around_m: float) -> Box:
+    side_m = around_m + BEYOND_M
+    corners = LocalFrame.around(*asset.centre.coords).to_degrees(np.array([[-side_m, -side_m], [side_m, side_m]]))
+    return (*corners[0].tolist(), *corners[1].tolist())
+
+
+def _stood(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray) -> tuple[list[StandingSupport], list[tuple[int, int]]]:
+    """The supports, the inspected one first, and the spans between their places."""
     drawn, hung, _ = supports_and_spans(found)
     places = frame.to_metres(found.position)
     order = [own, *(place for place in range(len(drawn)) if place != own)]
     number = {place: count for count, place in enumerate(order)}
     supports = [StandingSupport(drawn[place], float(places[place, 0]), float(places[place, 1]), float(foot_m[place])) for place in order]
-    spans = [(number[span.start], number[span.end]) for span in hung]
-    others = list(_others(box, frame, float(band.low_m.max())))
-    return tower_site(supports, spans, settings.CLEARANCE_RULES, band, others, lens_offset_m)
+    return supports, [(number[span.start], number[span.end]) for span in hung]
 
 
 def _others(box: Box, frame: LocalFrame, highest_ground_m: float) -> Iterator[Obstacle]:

@@ -83,17 +83,18 @@ class CameraCatalogueSerializer(serializers.Serializer):
 
 
 class ViewsInputSerializer(KnownFieldsSerializer):
-    """Photos of every part, or of the whole from four sides: with which camera, and how fine."""
+    """Photos of every part, of the whole from four sides, or of the wires: with which camera, and how fine."""
 
     pattern = serializers.ChoiceField(
         choices=[own.value for own in ViewPattern], required=False,
-        help_text="detail, which is usual: every part; overview: the whole tower in each of four photos",
+        help_text="detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the "
+        "middle of each span, from both sides",
     )  # fmt: skip
     camera = CameraSerializer(required=False)
     camera_key = serializers.CharField(required=False, help_text="of the catalogue, in place of `camera`")
     gsd_mm = BetweenField(
         GSDS_MM, required=False,
-        help_text="ground sample distance: what a pixel shows at most, across the optical axis; needed for detail, 50 for an overview",
+        help_text="ground sample distance: what a pixel shows at most, across the optical axis; needed but for an overview, which has 50",
     )  # fmt: skip
     min_height_m = BetweenField(HEIGHTS_M, default=4.0, help_text="of the UAV above the ground")
 
@@ -162,7 +163,7 @@ class PlannedPhotoSerializer(serializers.Serializer):
 
 class ComponentCoverageSerializer(serializers.Serializer):
     component = serializers.ChoiceField(choices=[own.value for own in Component])
-    number = serializers.IntegerField(help_text="among those of its kind, from 0")
+    number = serializers.IntegerField(help_text="among those of its kind, from 0; of wires: left, then right side of each span")
     area_m2 = serializers.FloatField()
     shown = serializers.FloatField(help_text="share of the area, 0 to 1")
     reachable = serializers.FloatField(help_text="share of the area that a photo can show")

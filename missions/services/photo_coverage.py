@@ -21,9 +21,10 @@ from missions.models import InspectionTarget, Mission
 from missions.selectors.photo_flights import KEPT_S, kept_by
 from missions.selectors.tower_sites import TowerOnMap, tower_on_map
 from missions.services.view_plans import coverage_json
-from planning.task import MM_PER_M, ViewsRequest, task_from_json
+from planning.task import MM_PER_M, ViewPattern, ViewsRequest, task_from_json
 from planning.trajectory.waypoints import WaypointKind
 from planning.views.proof import MAX_AWAY_M, ProofSurface, TakenPhoto, flown_camera, proof_surface, why_not_counted
+from planning.views.span_views import wires_solid
 from planning.views.visibility import axes_of
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.jobs.planning_lock import hold_planning_lock
@@ -117,13 +118,23 @@ def _over_sea(own: PhotoOfMission, take_off_m: Mapping[tuple[int, int], float]) 
 
 
 class _Matching:
-    """Gives photos to targets: by their waypoint, unless they are near another tower and not near that one; else to the nearest tower."""
+    """Gives photos to targets: by their waypoint, unless they are near another tower and not near that one; else to the nearest tower.
+
+    Near is up to MAX_AWAY_M, or a little more than the farthest photo of the tower is planned at.
+    """
 
     def __init__(self, planned: Mapping[int, Sequence[PlannedPhoto]], centres: Mapping[int, tuple[float, ...]]) -> None:
         self._target = {(one.uav, one.waypoint): target for target, photos in planned.items() for one in photos}
         self._keys = list(centres)
         self._frame = LocalFrame.around(*np.array(list(centres.values())).mean(axis=0).tolist()) if centres else None
         self._at = None if self._frame is None else self._frame.to_metres(np.array(list(centres.values()), dtype=np.float64))
+        self._near_m = np.array([self._farthest_m(place, planned.get(key, ())) for place, key in enumerate(self._keys)])
+
+    def _farthest_m(self, place: int, photos: Sequence[PlannedPhoto]) -> float:
+        if self._frame is None or self._at is None or not photos:
+            return MAX_AWAY_M
+        away_m = self._frame.to_metres(np.array([(one.photo.lon, one.photo.lat) for one in photos], dtype=np.float64)) - self._at[place]
+        return max(MAX_AWAY_M, float(np.hypot(*away_m.T).max()) + SAME_PLACE_M)
 
     def of(self, photos: Sequence[PhotoOfMission]) -> dict[int, list[PhotoOfMission]]:
         found: dict[int, list[PhotoOfMission]] = {}
@@ -143,7 +154,7 @@ class _Matching:
         if self._frame is None or self._at is None or photo.lon is None or photo.lat is None:
             return []
         away_m = np.linalg.norm(self._at - self._frame.to_metres(np.array([[photo.lon, photo.lat]])), axis=1)
-        return [self._keys[place] for place in np.argsort(away_m).tolist() if away_m[place] <= MAX_AWAY_M]
+        return [self._keys[place] for place in np.argsort(away_m).tolist() if away_m[place] <= self._near_m[place]]
 
 
 def _of_target(target: InspectionTarget, taken: TakenByTarget, version: DatasetVersion) -> Json:
@@ -216,11 +227,12 @@ class _Proving:
 
 
 def _tower(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ProofSurface] | None:
-    found = tower_on_map(asset, views.min_height_m, float(np.linalg.norm(views.camera.offset_m)))
+    found = tower_on_map(asset, views)
     if found is None:
         return None
     with hold_planning_lock():
-        return found, proof_surface(found.site, flown_camera(views.camera), views.gsd_m)
+        wires = wires_solid(found.site) if views.pattern is ViewPattern.SPANS else None
+        return found, proof_surface(found.site, flown_camera(views.camera), views.gsd_m, wires)
 
 
 def _deviations(planned: Sequence[PlannedPhoto], taken: Sequence[PhotoOfMission]) -> list[Json]:

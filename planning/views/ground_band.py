@@ -12,7 +12,7 @@ from planning.views.solids import FloatArray
 
 BoolArray = NDArray[np.bool_]
 
-HALF_SIDE_M, CELL_M = 180.0, 2.0
+HALF_SIDE_M, CELL_M = 180.0, 2.0  # of the square, if nothing else is asked for
 STEP_M = 1.0  # between places of a way whose height over the ground is looked at
 PAIRS_AT_ONCE = 4_000
 
@@ -22,10 +22,12 @@ class GroundBand:
     """Least and greatest heights [m] over the asset's foot, float64 (k, k), in cells from the south-west corner of a square around it.
 
     Each cell has the highest and the lowest ground in it and in the cells beside it. Beyond the square the cell at its edge counts.
+    half_side_m: of the square.
     """
 
     low_m: FloatArray
     high_m: FloatArray
+    half_side_m: float = HALF_SIDE_M
 
     @classmethod
     def level(cls, min_height_m: float, max_height_m: float) -> "GroundBand":
@@ -33,24 +35,26 @@ class GroundBand:
         return cls(np.full((1, 1), min_height_m), np.full((1, 1), max_height_m))
 
     @classmethod
-    def over(cls, ground_m: Callable[[FloatArray], FloatArray], min_height_m: float, max_height_m: float) -> "GroundBand":
+    def over(
+        cls, ground_m: Callable[[FloatArray], FloatArray], min_height_m: float, max_height_m: float, half_side_m: float = HALF_SIDE_M
+    ) -> "GroundBand":  # fmt: skip
         """Over the ground that ground_m tells at places (n, 2) over that at the foot [m].
 
         Where it does not know the ground (NaN), the highest one that it knows counts from below, and the lowest from above.
         """
-        edge_m = np.arange(-HALF_SIDE_M, HALF_SIDE_M + CELL_M, CELL_M)
+        edge_m = np.arange(-half_side_m, half_side_m + CELL_M, CELL_M)
         east, north = np.meshgrid(edge_m, edge_m)
         heights_m = ground_m(np.column_stack([east.ravel(), north.ravel()])).reshape(east.shape)
         known = heights_m[~np.isnan(heights_m)]
         highest_m, lowest_m = (float(known.max()), float(known.min())) if len(known) else (0.0, 0.0)
         above = maximum_filter(np.where(np.isnan(heights_m), highest_m, heights_m), size=3)
         below = minimum_filter(np.where(np.isnan(heights_m), lowest_m, heights_m), size=3)
-        return cls(above + min_height_m, below + max_height_m)
+        return cls(above + min_height_m, below + max_height_m, half_side_m)
 
     def limits_at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Least and greatest height [m] at places (n, 2)."""
         last = len(self.low_m) - 1
-        cell = np.clip(np.rint((places + HALF_SIDE_M) / CELL_M), 0, last).astype(np.int64)
+        cell = np.clip(np.rint((places + self.half_side_m) / CELL_M), 0, last).astype(np.int64)
         return self.low_m[cell[:, 1], cell[:, 0]], self.high_m[cell[:, 1], cell[:, 0]]
 
     def leaves_out(self, points: FloatArray) -> BoolArray:

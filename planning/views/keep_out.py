@@ -16,7 +16,7 @@ from planning.views.solids import FloatArray
 VICINITY_M = ((10.0, 1.15), (20.0, 1.22), (30.0, 1.32), (110.0, 2.0), (220.0, 3.0), (380.0, 4.0), (480.0, 6.1), (700.0, 8.4))
 USUAL_KV = 110.0  # where nothing is known of a line, its next class up counts
 SWING_DEG = 30.0  # of wires and strings to each side, in winds in which UAVs fly: own assumption
-SITE_M = 150.0  # around the inspected asset: what of wires and supports is looked at
+SITE_M = 150.0  # around the inspected asset: what of wires and supports is looked at, if nothing else is asked for
 PIECE_M = 25.0  # of a span, with the height of its higher end
 DIRECTIONS = 16  # in which a column is bounded
 _ANGLES = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
@@ -116,44 +116,45 @@ class KeepOut:
         over = (NORMALS @ place < self.bound).all(axis=1)
         return float(self.top_m[over].max(initial=-math.inf))
 
-    def top_between(self, start: FloatArray, end: FloatArray) -> float:
-        """The top of the highest column [m] that the line between two places crosses on the map, -inf where there is none."""
-        crossed = [
-            top_m
-            for bound, top_m in zip(self.bound, self.top_m.tolist(), strict=True)
-            if _clips(start[None, :], end[None, :], bound, math.inf)[0]
-        ]
-        return max(crossed, default=-math.inf)
+    def tops_between(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """The top of the highest column [m] that each line from start to end, (n, 3), crosses on the map, -inf where there is none."""
+        tops_m = np.full(len(start), -np.inf)
+        for bound, top_m in zip(self.bound, self.top_m.tolist(), strict=True):
+            lower = np.flatnonzero(tops_m < top_m)
+            tops_m[lower[_clips(start[lower], end[lower], bound, math.inf)]] = top_m
+        return tops_m
 
 
-def keep_out(obstacles: Sequence[Obstacle], spans: Sequence[Span], clearance: float, band: GroundBand) -> KeepOut:
-    """Return the columns of what stands within SITE_M and of the wires there, clearance [m] wider and higher than they are."""
-    columns = [_column(own.places, own.half_width_m, own.top_m, clearance) for own in obstacles if _is_near(own.places)]
+def keep_out(
+    obstacles: Sequence[Obstacle], spans: Sequence[Span], clearance: float, band: GroundBand, around_m: float = SITE_M
+) -> KeepOut:  # fmt: skip
+    """Return the columns of what stands within around_m and of the wires there, clearance [m] wider and higher than they are."""
+    columns = [_column(own.places, own.half_width_m, own.top_m, clearance) for own in obstacles if _is_near(own.places, around_m)]
     for span in spans:
-        columns += _span_columns(span, clearance)
+        columns += [_column(places, 0.0, top_m, clearance) for places, top_m in _span_pieces(span) if _is_near(places, around_m)]
     bound = np.array([bound for bound, _ in columns]).reshape(-1, DIRECTIONS)
     return KeepOut(bound, np.array([top_m for _, top_m in columns]), band)
 
 
-def _is_near(places: FloatArray) -> bool:
-    """Whether the box of the places comes within SITE_M."""
+def _is_near(places: FloatArray, around_m: float) -> bool:
+    """Whether the box of the places comes so near."""
     low, high = places.min(axis=0), places.max(axis=0)
-    return bool((low <= SITE_M).all() and (high >= -SITE_M).all())
+    return bool((low <= around_m).all() and (high >= -around_m).all())
 
 
 def _column(places: FloatArray, half_width_m: float, top_m: float, clearance: float) -> tuple[FloatArray, float]:
     return (places @ NORMALS.T).max(axis=0) + half_width_m + clearance, top_m + clearance
 
 
-def _span_columns(span: Span, clearance: float) -> list[tuple[FloatArray, float]]:
-    """In pieces, as wide as the wires swing there, and as high as the straight line between the highest points."""
+def _span_pieces(span: Span) -> list[tuple[FloatArray, float]]:
+    """Corners and top of each piece, as wide as the wires swing there, and as high as the straight line between the highest points."""
     start, end = np.array(span.start), np.array(span.end)
     length_m = float(np.linalg.norm(end - start))
     if length_m == 0.0:
         return []
     along = (end - start) / length_m
     right = np.array([along[1], -along[0]])
-    columns = []
+    pieces = []
     cuts_m = np.linspace(0.0, length_m, math.ceil(length_m / PIECE_M) + 1)
     for low_m, high_m in zip(cuts_m[:-1].tolist(), cuts_m[1:].tolist(), strict=True):
         swings_m = [_swing_m(span, at_m, length_m) for at_m in (low_m, high_m)]
@@ -161,9 +162,8 @@ def _span_columns(span: Span, clearance: float) -> list[tuple[FloatArray, float]
         sides_m = (span.left_m - swing_m, span.right_m + swing_m)
         places = np.array([start + along * at_m + right * side_m for at_m in (low_m, high_m) for side_m in sides_m])
         tops_m = [span.start_top_m + (span.end_top_m - span.start_top_m) * at_m / length_m for at_m in (low_m, high_m)]
-        if _is_near(places):
-            columns.append(_column(places, 0.0, max(tops_m), clearance))
-    return columns
+        pieces.append((places, max(tops_m)))
+    return pieces
 
 
 def _swing_m(span: Span, at_m: float, length_m: float) -> float:

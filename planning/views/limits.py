@@ -10,9 +10,6 @@ from planning.views.keep_out import KeepOut
 from planning.views.solids import FloatArray, IntArray, Patches
 from planning.views.visibility import MAX_ANGLE_DEG, OFF_SURFACE_M, RayCaster
 
-RINGS_DEG = (0.0, 15.0, 30.0, 45.0, 58.0)  # from a patch's normal: where it is looked from to learn whether it can be seen
-AROUND = 12  # directions in each ring
-SHARES = (0.1, 0.25, 0.45, 0.65, 0.85, 0.999)  # of the farthest distance
 BESIDE_M = 1.0  # what stands nearer hides a patch
 
 
@@ -28,6 +25,18 @@ class Limit(StrEnum):
 
 NONE, DISTANCE, GIMBAL, HEIGHT, HIDDEN = range(len(Limit))
 LIMITS = tuple(Limit)
+
+
+@dataclass(frozen=True)
+class LookBack:
+    """From where a patch is looked at to learn whether it can be seen.
+
+    rings_deg: from its normal; around: directions in each ring; shares: of the farthest distance.
+    """
+
+    rings_deg: tuple[float, ...] = (0.0, 15.0, 30.0, 45.0, 58.0)
+    around: int = 12
+    shares: tuple[float, ...] = (0.1, 0.25, 0.45, 0.65, 0.85, 0.999)
 
 
 @dataclass(frozen=True)
@@ -47,12 +56,14 @@ class Limits:
     patch: IntArray
 
 
-def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Camera, farthest_m: float) -> Limits:
+def limits_of(
+    patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Camera, farthest_m: float, look_back: LookBack = LookBack()
+) -> Limits:
     """Return why each patch cannot be photographed, and places from where it can.
 
     Looks back from the patch in directions within the greatest angle, at distances up to the farthest.
     """
-    directions = _directions(patches.normal)
+    directions = _directions(patches.normal, look_back)
     start = patches.centre + OFF_SURFACE_M * patches.normal
     pitch_min, pitch_max = camera.gimbal.pitch_min_deg, camera.gimbal.pitch_max_deg
     spare_deg = np.degrees(np.arctan(camera.sensor_height_mm / (2.0 * camera.focal_lengths_mm[-1])))
@@ -64,7 +75,7 @@ def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Ca
         free[open_] = caster.is_free(start[open_], start[open_] + direction[open_] * BESIDE_M)
         pitch = -np.degrees(np.arcsin(np.clip(direction[:, 2], -1.0, 1.0)))
         aimed = (pitch >= pitch_min - spare_deg) & (pitch <= pitch_max + spare_deg)
-        for share in SHARES:
+        for share in look_back.shares:
             if share * farthest_m < camera.nearest_focus_m:
                 continue
             place = patches.centre + direction * share * farthest_m
@@ -80,16 +91,16 @@ def limits_of(patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Ca
     return Limits(limit, np.concatenate(places), np.concatenate(of_patch))
 
 
-def _directions(normal: FloatArray) -> FloatArray:
+def _directions(normal: FloatArray, look_back: LookBack) -> FloatArray:
     """Unit vectors around each normal, (p, directions, 3)."""
     aside = np.where(np.abs(normal[:, 2:]) < 0.9, np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
     first = np.cross(normal, aside)
     first /= np.linalg.norm(first, axis=1)[:, None]
     second = np.cross(normal, first)
     rings = [normal]
-    for ring_deg in RINGS_DEG[1:]:
+    for ring_deg in look_back.rings_deg[1:]:
         assert ring_deg < MAX_ANGLE_DEG  # noqa: S101 - figures of this module
-        for turn in 2.0 * np.pi * np.arange(AROUND) / AROUND:
+        for turn in 2.0 * np.pi * np.arange(look_back.around) / look_back.around:
             tilt = np.radians(ring_deg)
             rings.append(np.cos(tilt) * normal + np.sin(tilt) * (np.cos(turn) * first + np.sin(turn) * second))
     return np.stack(rings, axis=1)

@@ -14,15 +14,16 @@ import numpy as np
 from inspection.geodesy.local_frame import LocalFrame
 from planning.views.camera import Camera, Lens, standoff_m
 from planning.views.coverage import ComponentCoverage, Coverage, by_component, coverage_of
-from planning.views.limits import limits_of
+from planning.views.limits import LookBack, limits_of
 from planning.views.site import TowerSite
-from planning.views.solids import IntArray, Patches, patches_of
+from planning.views.solids import IntArray, Patches, Solid, patches_of
 from planning.views.visibility import Poses, RayCaster
 
 MIN_PITCH_DEG = -80.0
 REACH_M = 80.0  # from the asset's axis, of candidate positions
 PROOF_PATCH_M = 1.0  # sides of the patches on which coverage is measured
 MAX_AWAY_M = 2.0 * REACH_M  # from the tower's axis: beyond, a photo is of something else, or its position is wrong
+AT_WIRES = LookBack((0.0, 30.0, 58.0), 8, (0.4, 0.7, 0.999))  # of which there is much that looks the same
 MAX_ROLL_DEG = 3.0  # turns the edge of a picture by as much as the margin within which photos are planned
 MAX_AMSL_M = 10_000.0
 
@@ -35,7 +36,7 @@ class NotCounted(StrEnum):
     HEIGHT = "height"  # its reference is unknown
     ATTITUDE = "attitude"  # where the camera looked is unknown
     TILTED = "tilted"  # more than MAX_ROLL_DEG
-    FAR = "far"  # from the tower, more than MAX_AWAY_M
+    FAR = "far"  # from the tower, more than MAX_AWAY_M or half of its longest span
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,23 +64,27 @@ class Proof:
 
 @dataclass(frozen=True, eq=False)
 class ProofSurface:
-    """The surface of a site's tower, cut into patches, with why no photo can show some of them (places in LIMITS)."""
+    """The surface of a site's tower or wires, cut into patches, with why no photo can show some of them (places in LIMITS).
 
-    site: TowerSite
+    away_m: from the tower's axis, up to where photos count.
+    """
+
+    solid: Solid
     camera: Camera
     gsd_m: float
     patches: Patches
     caster: RayCaster
     limit: IntArray
+    away_m: float = MAX_AWAY_M
 
     def coverage(self, poses: Poses, lens: Lens) -> Coverage:
         return coverage_of(poses, lens, self.camera, self.patches, self.caster, self.limit)
 
     def proof(self, photos: Sequence[TakenPhoto], focal_mm: float, frame: LocalFrame, base_amsl_m: float | None) -> Proof:
         """Return what photos at this focal length show. base_amsl_m: of the tower's foot; without one no height is known over it."""
-        poses, not_counted = _counted(photos, frame, base_amsl_m)
+        poses, not_counted = _counted(photos, frame, base_amsl_m, self.away_m)
         coverage = self.coverage(poses, self.lens(focal_mm))
-        return Proof(coverage, by_component(self.site.solid, coverage), len(poses), not_counted)
+        return Proof(coverage, by_component(self.solid, coverage), len(poses), not_counted)
 
     def lens(self, focal_mm: float) -> Lens:
         return Lens(focal_mm, self.camera.nearest_focus_m, standoff_m(self.camera, self.gsd_m, focal_mm))
@@ -96,11 +101,14 @@ def reach_m(camera: Camera, asked_gsd_m: float) -> float:
     return min(standoff_m(camera, asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
 
 
-def proof_surface(site: TowerSite, camera: Camera, asked_gsd_m: float) -> ProofSurface:
-    """Return the surface on which photos with this camera are proven. camera: as flown_camera has it."""
-    patches, caster = patches_of(site.solid, PROOF_PATCH_M), RayCaster([site.solid])
-    limits = limits_of(patches, site.keep_out, caster, camera, reach_m(camera, asked_gsd_m))
-    return ProofSurface(site, camera, asked_gsd_m, patches, caster, limits.limit)
+def proof_surface(site: TowerSite, camera: Camera, asked_gsd_m: float, wires: Solid | None = None) -> ProofSurface:
+    """Return the surface on which photos with this camera are proven: of the tower, or its wires. camera: as flown_camera has it."""
+    solid = site.solid if wires is None else wires
+    patches, caster = patches_of(solid, PROOF_PATCH_M), RayCaster([site.solid])
+    look_back = LookBack() if wires is None else AT_WIRES
+    limits = limits_of(patches, site.keep_out, caster, camera, reach_m(camera, asked_gsd_m), look_back)
+    away_m = MAX_AWAY_M if wires is None else max(MAX_AWAY_M, site.around_m)
+    return ProofSurface(solid, camera, asked_gsd_m, patches, caster, limits.limit, away_m)
 
 
 def why_not_counted(photo: TakenPhoto) -> NotCounted | None:
@@ -117,7 +125,9 @@ def why_not_counted(photo: TakenPhoto) -> NotCounted | None:
     return None if _is_within(roll_deg, MAX_ROLL_DEG) else NotCounted.TILTED
 
 
-def _counted(photos: Sequence[TakenPhoto], frame: LocalFrame, base_amsl_m: float | None) -> tuple[Poses, dict[NotCounted, int]]:
+def _counted(
+    photos: Sequence[TakenPhoto], frame: LocalFrame, base_amsl_m: float | None, away_m: float
+) -> tuple[Poses, dict[NotCounted, int]]:  # fmt: skip
     """Return the poses of the photos that count, in the frame around the tower's foot, and the numbers of the others."""
     reasons: Counter[NotCounted] = Counter()
     rows = []
@@ -131,7 +141,7 @@ def _counted(photos: Sequence[TakenPhoto], frame: LocalFrame, base_amsl_m: float
             reasons[reason] += 1
     values = np.array(rows, dtype=np.float64).reshape(-1, 5)
     position = np.column_stack([frame.to_metres(values[:, :2]), values[:, 2] - (base_amsl_m or 0.0)])
-    is_near = np.linalg.norm(position, axis=1) <= MAX_AWAY_M
+    is_near = np.linalg.norm(position, axis=1) <= away_m
     if not is_near.all():
         reasons[NotCounted.FAR] += int((~is_near).sum())
     return Poses(position[is_near], values[is_near, 3], values[is_near, 4]), dict(reasons)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from inspection.scene.supports import DrawnSupport
 from planning.views.ground_band import GroundBand
-from planning.views.keep_out import ClearanceRules, KeepOut, Obstacle, Span, clearance_m, keep_out
+from planning.views.keep_out import SITE_M, ClearanceRules, KeepOut, Obstacle, Span, clearance_m, keep_out
 from planning.views.solids import Solid
 from planning.views.tower_solid import tower_solid
 
@@ -28,14 +28,41 @@ class StandingSupport:
         return self.ground_m + max(self.support.height_m, self.support.likely_m)
 
 
+@dataclass(frozen=True)
+class WireBand:
+    """Where the wires of a span hang, whatever their temperature. span: as it begins at the inspected tower.
+
+    start_low_m, end_low_m: where the lowest wire is fastened at both ends.
+    """
+
+    span: Span
+    start_low_m: float
+    end_low_m: float
+
+    @property
+    def length_m(self) -> float:
+        return math.dist(self.span.start, self.span.end)
+
+    def heights_m(self, along_m: float) -> tuple[float, float]:
+        """The lowest wire at its hottest, and the straight line over the highest points, so far along the span."""
+        share, span = along_m / self.length_m, self.span
+        low_m = self.start_low_m + (self.end_low_m - self.start_low_m) * share - 4.0 * span.sag_m * share * (1.0 - share)
+        return low_m, span.start_top_m + (span.end_top_m - span.start_top_m) * share
+
+
 @dataclass(frozen=True, eq=False)
 class TowerSite:
-    """The inspected tower, which is supports[0] and stands at the origin, and what is kept from it and its surroundings."""
+    """The inspected tower, which is supports[0] and stands at the origin, and what is kept from it and its surroundings.
+
+    bands: of its spans. around_m: how far from the tower its surroundings are known.
+    """
 
     supports: tuple[StandingSupport, ...]
     solid: Solid
     clearance_m: float
     keep_out: KeepOut
+    bands: tuple[WireBand, ...] = ()
+    around_m: float = SITE_M
 
     @property
     def tower(self) -> DrawnSupport:
@@ -49,8 +76,9 @@ def tower_site(
     band: GroundBand,
     obstacles: Sequence[Obstacle] = (),
     lens_offset_m: float = 0.0,
+    around_m: float = SITE_M,
 ) -> TowerSite:
-    """Return the site of the first of the supports.
+    """Return the site of the first of the supports, with what is within around_m.
 
     spans: places of the supports at both ends. The clearance is that of the highest voltage there, and lens_offset_m more: poses are the
     lens's, and the UAV is as far from them. obstacles: what else is on the map.
@@ -58,7 +86,10 @@ def tower_site(
     kept_m = max(clearance_m(own.support.voltage_v, rules) for own in supports) + lens_offset_m
     stands = [Obstacle(_placed(own).triangles.reshape(-1, 3)[:, :2], 0.0, own.top_m) for own in supports]
     wires = [_span(supports[start], supports[end]) for start, end in spans]
-    return TowerSite(tuple(supports), _placed(supports[0]), kept_m, keep_out([*stands, *obstacles], wires, kept_m, band))
+    own_ends = [(start, end) if start == 0 else (end, start) for start, end in spans if 0 in {start, end}]
+    bands = [WireBand(_span(supports[start], supports[end]), _low_m(supports[start]), _low_m(supports[end])) for start, end in own_ends]
+    kept = keep_out([*stands, *obstacles], wires, kept_m, band, around_m)
+    return TowerSite(tuple(supports), _placed(supports[0]), kept_m, kept, tuple(bands), around_m)
 
 
 def _placed(own: StandingSupport) -> Solid:
@@ -77,6 +108,11 @@ def _span(start: StandingSupport, end: StandingSupport) -> Span:
 
 def _across(own: StandingSupport) -> list[float]:
     return [across for across, _ in (*own.support.arms.slots, *own.support.arms.earth)] or [0.0]
+
+
+def _low_m(own: StandingSupport) -> float:
+    """The height of its lowest wire, over the ground of the inspected one."""
+    return own.ground_m + min((hangs_m for _, hangs_m in own.support.arms.slots), default=own.support.likely_m)
 
 
 def _string_m(own: StandingSupport) -> float:

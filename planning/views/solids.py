@@ -26,10 +26,11 @@ class Component(StrEnum):
     CLAMP = "clamp"
     EARTH_WIRE_PEAK = "earth_wire_peak"
     GUY = "guy"
+    WIRES = "wires"  # of one side of a span, up to its middle
 
 
 # Patches of these are larger, by this factor: there is much of them, and it looks the same.
-COARSER = {Component.BODY: 1.5, Component.GUY: 2.0}
+COARSER = {Component.BODY: 1.5, Component.GUY: 2.0, Component.WIRES: 7.0}
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,32 +71,33 @@ def view_flight(poses: Poses, keep_out: KeepOut, entry: FloatArray, end: FloatAr
 def _ways(places: FloatArray, keep_out: KeepOut) -> tuple[FloatArray, dict[tuple[int, int], tuple[FloatArray, ...]]]:
     """The cost of going straight, or else over what is between; and the bends of the latter."""
     count = len(places)
-    one, other = (index.ravel() for index in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
+    one, other = np.triu_indices(count, 1)
     change = places[other] - places[one]
-    cost = np.linalg.norm(change[:, :2], axis=1) + CLIMB_FACTOR * np.abs(change[:, 2])
-    met = keep_out.meets(places[one], places[other])
-    cost = np.where(cost < SAME_PLACE_M, 1e-6, cost).reshape(count, count)
-    np.fill_diagonal(cost, 0.0)
+    along = np.linalg.norm(change[:, :2], axis=1) + CLIMB_FACTOR * np.abs(change[:, 2])
+    cost = np.zeros((count, count))
+    cost[one, other] = np.where(along < SAME_PLACE_M, 1e-6, along)
+    met = np.flatnonzero(keep_out.meets(places[one], places[other]))
+    one, other = one[met], other[met]
+    levels_m = _levels_over(places[one], places[other], keep_out)
     via: dict[tuple[int, int], tuple[FloatArray, ...]] = {}
-    for here, there in zip(one[met].tolist(), other[met].tolist(), strict=True):
-        if here == there:
-            continue
-        level_m = _level_over(places[here], places[there], keep_out)
-        if level_m is None:
+    for here, there, level_m in zip(one.tolist(), other.tolist(), levels_m.tolist(), strict=True):
+        if level_m == np.inf:
             cost[here, there] = np.inf
             continue
         up, down = np.append(places[here, :2], level_m), np.append(places[there, :2], level_m)
-        via[here, there] = (up, down)
+        via[here, there], via[there, here] = (up, down), (down, up)
         climb_m = 2.0 * level_m - float(places[here, 2]) - float(places[there, 2])
         cost[here, there] = float(np.linalg.norm(up - down)) + CLIMB_FACTOR * climb_m
-    return cost, via
+    return cost + cost.T, via
 
 
-def _level_over(start: FloatArray, end: FloatArray, keep_out: KeepOut) -> float | None:
-    """The height [m] at which a way leads over all columns and ground between two places; None where that is too high."""
-    least_m, most_m = keep_out.band.limits_between(start[:2], end[:2])
-    level_m = max(keep_out.top_between(start, end) + ABOVE_TOP_M, least_m, float(start[2]), float(end[2]))
-    return level_m if level_m <= most_m else None
+def _levels_over(start: FloatArray, end: FloatArray, keep_out: KeepOut) -> FloatArray:
+    """The height [m] at which a way leads over all columns and ground between each two places, (n, 3); inf where that is too high."""
+    limits = [keep_out.band.limits_between(*pair) for pair in zip(start[:, :2], end[:, :2], strict=True)]
+    least_m, most_m = np.array(limits).reshape(-1, 2).T
+    tops_m = keep_out.tops_between(start, end) + ABOVE_TOP_M
+    levels_m = np.maximum(np.maximum(tops_m, least_m), np.maximum(start[:, 2], end[:, 2]))
+    return np.where(levels_m <= most_m, levels_m, np.inf)
 
 
 def _order(cost: FloatArray, ends: int) -> list[int]:

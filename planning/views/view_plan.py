@@ -1,4 +1,4 @@
-"""Photos of a tower with the flight through them and what they show: of every part, or of the whole from four sides.
+"""Photos of a tower with the flight through them and what they show: of every part, of the whole from four sides, or of its wires.
 
 An overview looks from between the directions of the line, obliquely from above where heights allow it.
 """
@@ -13,9 +13,10 @@ from planning.views.coverage import ComponentCoverage, Coverage, by_component
 from planning.views.detail_views import detail_views
 from planning.views.keep_out import KeepOut
 from planning.views.limits import DetailRules
-from planning.views.proof import flown_camera, proof_surface
+from planning.views.proof import ProofSurface, flown_camera, proof_surface
 from planning.views.site import TowerSite
 from planning.views.solids import FloatArray
+from planning.views.span_views import span_photos, wires_solid
 from planning.views.view_flight import NO_PHOTO, ViewFlight, view_flight
 from planning.views.visibility import Poses, RayCaster, axes_of
 
@@ -64,14 +65,23 @@ def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: Vie
     """
     camera = flown_camera(camera)
     views = detail_views(site.solid, site.keep_out, camera, rules)
-    return _plan(site, camera, views.poses, views.lens.focal_mm, views.bound, rules.asked_gsd_m, speeds)
+    surface = proof_surface(site, camera, rules.asked_gsd_m)
+    return _plan(site, surface, views.poses, views.lens.focal_mm, views.bound, speeds)
 
 
 def overview_plan(site: TowerSite, camera: Camera, asked_gsd_m: float, speeds: ViewSpeeds) -> ViewPlan:
     """Plan photos of the whole tower at the shortest focal length. What is coarser than asked_gsd_m counts as not shown. Raises NoWay."""
     camera = flown_camera(camera)
     poses = overview_poses(site, camera)
-    return _plan(site, camera, poses, camera.focal_lengths_mm[0], len(poses), asked_gsd_m, speeds)
+    return _plan(site, proof_surface(site, camera, asked_gsd_m), poses, camera.focal_lengths_mm[0], len(poses), speeds)
+
+
+def spans_plan(site: TowerSite, camera: Camera, asked_gsd_m: float, speeds: ViewSpeeds) -> ViewPlan:
+    """Plan photos of the wires up to the middle of each span, from both sides. Raises TooManyPhotos or NoWay."""
+    camera = flown_camera(camera)
+    photos = span_photos(site, camera, asked_gsd_m)
+    surface = proof_surface(site, camera, asked_gsd_m, wires_solid(site))
+    return _plan(site, surface, photos.poses, photos.focal_mm, len(photos.poses), speeds, photos.distance_m)
 
 
 def overview_poses(site: TowerSite, camera: Camera) -> Poses:
@@ -127,7 +137,8 @@ def _clear_m(middle: FloatArray, forward: FloatArray, least_m: float, keep_out: 
 
 
 def _plan(
-    site: TowerSite, camera: Camera, unordered: Poses, focal_mm: float, bound: int, asked_gsd_m: float, speeds: ViewSpeeds
+    site: TowerSite, surface: ProofSurface, unordered: Poses, focal_mm: float, bound: int, speeds: ViewSpeeds,
+    distance_m: FloatArray | None = None,
 ) -> ViewPlan:  # fmt: skip
     entry = np.array([0.0, 0.0, site.keep_out.top_at(np.zeros(2)) + ENTRY_ABOVE_M])
     flight = view_flight(unordered, site.keep_out, entry, entry)
@@ -135,12 +146,12 @@ def _plan(
     poses = unordered.only(order)
     renumbered = np.full(len(flight), NO_PHOTO)
     renumbered[flight.photo != NO_PHOTO] = np.arange(len(order))
-    surface = proof_surface(site, camera, asked_gsd_m)
     lens = surface.lens(focal_mm)
     coverage = surface.coverage(poses, lens)
     return ViewPlan(
-        poses, _distance_m(poses, surface.caster), lens, ViewFlight(flight.position, renumbered), coverage,
-        by_component(site.solid, coverage), bound, _seconds(flight.position, len(poses), speeds),
+        poses, _distance_m(poses, surface.caster) if distance_m is None else distance_m[order], lens,
+        ViewFlight(flight.position, renumbered), coverage, by_component(surface.solid, coverage), bound,
+        _seconds(flight.position, len(poses), speeds),
     )  # fmt: skip
 
 

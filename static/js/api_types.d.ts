@@ -1396,7 +1396,7 @@ export interface components {
         };
         ComponentCoverage: {
             component: components["schemas"]["ComponentEnum"];
-            /** @description among those of its kind, from 0 */
+            /** @description among those of its kind, from 0; of wires: left, then right side of each span */
             number: number;
             /** Format: double */
             area_m2: number;
@@ -1440,9 +1440,10 @@ export interface components {
          *     * `clamp` - clamp
          *     * `earth_wire_peak` - earth_wire_peak
          *     * `guy` - guy
+         *     * `wires` - wires
          * @enum {string}
          */
-        ComponentEnum: "foundation" | "plate" | "body" | "head" | "crossarm" | "string" | "clamp" | "earth_wire_peak" | "guy";
+        ComponentEnum: "foundation" | "plate" | "body" | "head" | "crossarm" | "string" | "clamp" | "earth_wire_peak" | "guy" | "wires";
         /** @description Wind and temperature during the flight; without wind it is calm. */
         ConditionsOutput: {
             wind: components["schemas"]["WindLayerOutput"][];
@@ -8734,9 +8735,10 @@ export interface components {
         /**
          * @description * `detail` - detail
          *     * `overview` - overview
+         *     * `spans` - spans
          * @enum {string}
          */
-        ViewPattern: "detail" | "overview";
+        ViewPattern: "detail" | "overview" | "spans";
         /** @description Planned photos, with what was asked for. */
         ViewPlan: {
             /**
@@ -8744,6 +8746,7 @@ export interface components {
              *
              *     * `detail` - detail
              *     * `overview` - overview
+             *     * `spans` - spans
              */
             pattern?: components["schemas"]["ViewPattern"];
             /**
@@ -8792,10 +8795,11 @@ export interface components {
         };
         ViewPlanInputRequest: {
             /**
-             * @description detail, which is usual: every part; overview: the whole tower in each of four photos
+             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, from both sides
              *
              *     * `detail` - detail
              *     * `overview` - overview
+             *     * `spans` - spans
              */
             pattern?: components["schemas"]["ViewPattern"];
             camera?: components["schemas"]["CameraRequest"];
@@ -8803,7 +8807,7 @@ export interface components {
             camera_key?: string;
             /**
              * Format: double
-             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed for detail, 50 for an overview
+             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed but for an overview, which has 50
              */
             gsd_mm?: number;
             /**
@@ -8826,6 +8830,7 @@ export interface components {
              *
              *     * `detail` - detail
              *     * `overview` - overview
+             *     * `spans` - spans
              */
             pattern?: components["schemas"]["ViewPattern"];
             /**
@@ -8840,13 +8845,14 @@ export interface components {
             min_height_m: number;
             camera: components["schemas"]["Camera"];
         };
-        /** @description Photos of every part, or of the whole from four sides: with which camera, and how fine. */
+        /** @description Photos of every part, of the whole from four sides, or of the wires: with which camera, and how fine. */
         ViewsInputRequest: {
             /**
-             * @description detail, which is usual: every part; overview: the whole tower in each of four photos
+             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, from both sides
              *
              *     * `detail` - detail
              *     * `overview` - overview
+             *     * `spans` - spans
              */
             pattern?: components["schemas"]["ViewPattern"];
             camera?: components["schemas"]["CameraRequest"];
@@ -8854,7 +8860,7 @@ export interface components {
             camera_key?: string;
             /**
              * Format: double
-             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed for detail, 50 for an overview
+             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed but for an overview, which has 50
              */
             gsd_mm?: number;
             /**

@@ -1,4 +1,4 @@
-/** The panel that plans photos of a tower: of every part or an overview, camera, GSD and least height. Each change plans anew. */
+/** The panel that plans photos of a tower: of every part, an overview or its wires, camera, GSD and least height. Each change plans anew. */
 
 import { ApiError, isAbort, post } from "../api.js";
 import { gsdText } from "../cameras/words.js";
@@ -34,6 +34,7 @@ const KEPT = "kept"; // the value of a camera that a target was planned with and
 const PATTERNS = [
   { value: "detail", words: t("Every part") },
   { value: "overview", words: t("Overview from four sides") },
+  { value: "spans", words: t("Wires from both sides") },
 ];
 /**
  * What was asked last is asked first of the next tower; camera: "" until one was chosen or has shown anything.
@@ -340,7 +341,7 @@ export function openViewPlan(place, asset, ground, { take, closed = () => {}, ..
   layer ??= layerOf(ground);
   if (options.views) {
     const { pattern = "detail", gsd_mm, min_height_m } = options.views;
-    Object.assign(asked, { pattern, min_height_m, ...(pattern === "detail" ? { gsd_mm } : {}) });
+    Object.assign(asked, { pattern, min_height_m, ...(pattern === "overview" ? {} : { gsd_mm }) });
   }
   open = new ViewPlanPanel(
     asset,

@@ -40,7 +40,7 @@ const figures = ({
       t("Photos"),
       h(
         "span",
-        { title: pattern === "overview" ? "" : t("At least {count} are needed.", { count: numberText(bound) }) },
+        { title: pattern ? "" : t("At least {count} are needed.", { count: numberText(bound) }) },
         numberText(photos.length),
       ),
     ),

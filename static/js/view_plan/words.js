@@ -31,6 +31,7 @@ export const COMPONENTS = {
   clamp: t("Clamps"),
   earth_wire_peak: t("Earth-wire peaks"),
   guy: t("Guys"),
+  wires: t("Wires"),
 };
 
 /** @type {Record<Limit, string>} */
@@ -121,6 +122,10 @@ export function nothingText({ pattern, camera, gsd_mm, clearance_m, coverage }) 
       gsd: gsdText(gsdAt_mm(camera, focus_m)),
     });
   const limit = mainLimit(coverage.components);
+  if (pattern === "spans" && limit === "distance")
+    return t(
+      "This camera is too coarse from outside the clearance of swinging wires. Choose a longer lens or a coarser GSD.",
+    );
   return limit
     ? t("Most of the tower: {reason}.", { reason: LIMITS[limit] })
     : t("Choose another camera or a coarser GSD.");

@@ -9,7 +9,7 @@ from inspection.scene.forms import Form, Layout
 from inspection.scene.supports import DrawnSupport, arms_of
 from planning.views.camera import Camera, Gimbal
 from planning.views.ground_band import GroundBand
-from planning.views.keep_out import ClearanceRules, KeepOut
+from planning.views.keep_out import SITE_M, ClearanceRules, KeepOut
 from planning.views.site import StandingSupport, TowerSite, tower_site
 from planning.views.solids import FloatArray, Solid
 
@@ -53,15 +53,20 @@ def support(
     return DrawnSupport("tower", form, height_m, "tag", height_m, voltage_v, is_anchor, 0.0, arms)
 
 
-def standing(own: DrawnSupport, bearing_deg: float = 0.0, ground_m: Callable[[FloatArray], FloatArray] | None = None) -> StandingTower:
+def standing(
+    own: DrawnSupport, bearing_deg: float = 0.0, ground_m: Callable[[FloatArray], FloatArray] | None = None, around_m: float = SITE_M
+) -> StandingTower:  # fmt: skip
     """In a straight line of towers of its kind, SPAN_M apart, over level ground or a terrain."""
     own = replace(own, bearing_deg=bearing_deg)
     along = np.array([np.sin(np.radians(bearing_deg)), np.cos(np.radians(bearing_deg))])
     places = np.array([along * side * SPAN_M for side in (0.0, 1.0, -1.0)])
     feet_m = np.zeros(3) if ground_m is None else ground_m(places)
     supports = [StandingSupport(own, *place, foot_m) for place, foot_m in zip(places.tolist(), feet_m.tolist(), strict=True)]
-    band = GroundBand.level(MIN_HEIGHT_M, MAX_HEIGHT_M) if ground_m is None else GroundBand.over(ground_m, MIN_HEIGHT_M, MAX_HEIGHT_M)
-    return StandingTower(own, tower_site(supports, [(0, 1), (2, 0)], ClearanceRules(), band), tuple(supports))
+    band = GroundBand.level(MIN_HEIGHT_M, MAX_HEIGHT_M)
+    if ground_m is not None:
+        band = GroundBand.over(ground_m, MIN_HEIGHT_M, MAX_HEIGHT_M, around_m + 30.0)
+    site = tower_site(supports, [(0, 1), (2, 0)], ClearanceRules(), band, around_m=around_m)
+    return StandingTower(own, site, tuple(supports))
 
 
 TOWERS = {

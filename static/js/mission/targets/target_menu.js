@@ -23,6 +23,8 @@ export const TASKS = [
   { kind: "hold", icon: "timer", words: () => t("Hover"), word: () => t("Hover") },
 ];
 
+const VIEWS_WORDS = { detail: t("Every part"), overview: t("Overview"), spans: t("Wires") };
+
 /** @param {Task} task */
 export function taskIcon(task) {
   if (task.views) return "aperture";
@@ -31,13 +33,15 @@ export function taskIcon(task) {
 
 /** "Photos" @param {Task} task */
 export function taskWord({ kind, views }) {
-  if (views) return views.pattern === "overview" ? t("Overview") : t("Every part");
+  if (views) return VIEWS_WORDS[views.pattern ?? "detail"];
   return (TASKS.find((task) => task.kind === kind) ?? TASKS[0]).word();
 }
 
 /** "Take photos, 10 s" @param {Task} task */
 export function taskText(task) {
   if (task.views?.pattern === "overview") return t("Overview from four sides");
+  if (task.views?.pattern === "spans")
+    return t("Photograph the wires from both sides, GSD {gsd}", { gsd: gsdText(task.views.gsd_mm) });
   if (task.views) return t("Photograph every part, GSD {gsd}", { gsd: gsdText(task.views.gsd_mm) });
   const { words } = TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0];
   return task.hold_s ? `${words()}, ${secondsText(task.hold_s)}` : words();
