@@ -121,9 +121,20 @@ def test_an_overview_takes_the_whole_tower_from_four_sides_without_a_gsd(client:
         assert photo["pitch_deg"] <= 0.0
 
 
+def test_wires_are_photographed_up_to_the_middle_of_each_span_however_long_it_is(client: Client) -> None:
+    towers = [ground.tower((10.1 + lon, 56.1), height_m=30.0) for lon in (0.0, 0.003, 0.0122)]  # 186 m and 573 m apart
+    power_line(towers)
+    plan = planned(client, {"asset": towers[1].pk, "camera_key": "dji-p1-50", "gsd_mm": 8, "pattern": "spans"})
+    assert (plan["pattern"], plan["gsd_mm"]) == ("spans", 8.0)
+    at = LocalFrame.around(*towers[1].centre.coords).to_metres(np.array([photo["position"] for photo in plan["photos"]]))
+    assert -95.0 < at[:, 0].min() < -70.0 and 240.0 < at[:, 0].max() < 290.0
+    assert [(row["component"], row["number"]) for row in plan["coverage"]["components"]] == [("wires", number) for number in range(4)]
+    assert all(row["shown"] >= 0.98 and row["gsd_mm"] <= 8.0 for row in plan["coverage"]["components"])
+
+
 def test_a_pattern_that_is_not_known_and_a_detail_without_a_gsd_are_refused(client: Client) -> None:
     asset = world(height_m=30.0).towers[2].pk
-    for body, field in (({"pattern": "orbit"}, "pattern"), ({}, "gsd_mm"), ({"pattern": "detail"}, "gsd_mm")):
+    for body, field in (({"pattern": "orbit"}, "pattern"), ({}, "gsd_mm"), ({"pattern": "detail"}, "gsd_mm"), ({"pattern": "spans"}, "gsd_mm")):
         response = post(client, "view-plans", {"asset": asset, "camera_key": ZOOM} | body)
         assert response.status_code == 400
         assert list(response.json()["error"]["details"]) == [field]

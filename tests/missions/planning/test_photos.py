@@ -36,6 +36,7 @@ pytestmark = pytest.mark.django_db
 
 VIEWS = {"gsd_mm": 4, "camera_key": "dji-m30t-zoom"}
 WIDE_CAMERA = catalogue()["dji-m30t-wide"].camera
+WIRES_CAMERA = catalogue()["dji-p1-50"].camera
 
 
 @pytest.fixture(autouse=True)
@@ -139,6 +140,26 @@ def test_an_overview_is_flown_as_four_photos_and_kept_apart_from_every_part(here
     mission = mission_of_organisation(Organisation.objects.get(), answer["id"])
     frozen = frozen_route(mission.routes.get(), mission)
     assert sum(waypoint.task is not None and waypoint.task.view is not None for waypoint in frozen.waypoints) == 4
+
+
+def test_wires_of_neighbouring_towers_are_photographed_from_both_sides(here: World, client: Client) -> None:
+    uav = tern()
+    UavType.objects.update(cameras=[camera_to_json(WIRES_CAMERA)])
+    wires = {"kind": "photo", "views": {"pattern": "spans", "camera_key": "dji-p1-50", "gsd_mm": 8}}
+    answer = made(client, body(*({"asset": here.towers[place].pk, "task": wires} for place in (2, 3)), uav=uav))
+    assert answer["plan"]["unassigned"] == []
+    assert [row["task"]["views"]["pattern"] for row in answer["targets"]] == ["spans", "spans"]
+    frame = LocalFrame.around(*here.towers[2].centre.coords)
+    span_m = float(frame.to_metres(np.array([here.towers[3].centre.coords]))[0, 0])
+    for target, away_m in ((0, 0.0), (1, span_m)):
+        taken = [row for row in photos(answer["plan"]) if row["target"] == target]
+        at = frame.to_metres(np.array([row["position"] for row in taken])) - np.array([away_m, 0.0])
+        assert {bool(north_m > 0.0) for north_m in at[:, 1]} == {True, False}, "from both sides of the line, which leads east"
+        assert np.abs(at[:, 1]).min() >= taken[0]["task"]["view"]["clearance_m"]
+        assert span_m / 4.0 < np.abs(at[:, 0]).max() <= span_m / 2.0 + 0.1, "up to the middle of the spans"
+    mission = mission_of_organisation(Organisation.objects.get(), answer["id"])
+    frozen = frozen_route(mission.routes.get(), mission)
+    assert sum(waypoint.task is not None and waypoint.task.view is not None for waypoint in frozen.waypoints) == len(photos(answer["plan"]))
 
 
 def test_without_the_camera_no_uav_takes_them(here: World, client: Client) -> None:

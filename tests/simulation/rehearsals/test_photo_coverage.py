@@ -33,6 +33,7 @@ pytestmark = pytest.mark.django_db
 
 TURNING = replace(CAMERA, gimbal=Gimbal(-120.0, 45.0))  # the UAV turns for its photos
 WIDE = catalogue()["dji-m30t-wide"].camera
+LONG = catalogue()["dji-p1-50"].camera
 VIEWS = {"gsd_mm": 2, "camera": camera_to_json(TURNING)}
 NOW = datetime(2026, 11, 29, 12, tzinfo=UTC)
 
@@ -139,6 +140,19 @@ def test_an_overview_flown_in_wind_shows_what_was_promised(here: World, client: 
     (found,) = coverage(client, mission)
     (windy,) = found["rehearsed"]
     assert windy["photos"] == found["promised"]["photos"] == 4
+    assert windy["coverage"]["shown"] == pytest.approx(found["promised"]["coverage"]["shown"], abs=0.02)
+    assert (windy["deviations"], windy["not_counted"]) == ([], [])
+
+
+def test_photos_of_wires_flown_in_wind_show_what_was_promised(here: World, client: Client, person: User) -> None:
+    wires = {"kind": "photo", "views": {"pattern": "spans", "gsd_mm": 8, "camera": camera_to_json(LONG)}}
+    mission = planned(client, {"asset": here.towers[2].pk, "task": wires}, camera=LONG)
+    rehearsed(mission, person, "strong-wind")
+    (found,) = coverage(client, mission)
+    (windy,) = found["rehearsed"]
+    assert {row["component"] for row in found["promised"]["coverage"]["components"]} == {"wires"}
+    assert found["promised"]["coverage"]["shown_of_reachable"] >= 0.99
+    assert windy["photos"] == found["promised"]["photos"] >= 12
     assert windy["coverage"]["shown"] == pytest.approx(found["promised"]["coverage"]["shown"], abs=0.02)
     assert (windy["deviations"], windy["not_counted"]) == ([], [])
 
