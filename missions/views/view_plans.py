@@ -45,8 +45,9 @@ class ViewPlans(APIView):
     @extend_schema(
         operation_id="plan_views",
         summary="Plan photos of a tower or its wires at a ground sample distance, clear of the wires",
-        description="The fewest photos found that show what can be shown of the tower, or photos of its wires with an overlap of 30 %, the "
-        "flight through them, and the coverage of each component. The tower is modelled from its tags; wires count with their swing. Nothing is stored.",
+        description="The fewest photos found that show what can be shown of the tower, or photos of its wires with an overlap of 30 %; "
+        "the flight through them, and the coverage of each component. The tower is modelled from its tags; wires count with their "
+        "swing. Nothing is stored.",
         request=ViewPlanInputSerializer,
         responses=ViewPlanSerializer,
     )

@@ -134,7 +134,12 @@ def test_wires_are_photographed_up_to_the_middle_of_each_span_however_long_it_is
 
 def test_a_pattern_that_is_not_known_and_a_detail_without_a_gsd_are_refused(client: Client) -> None:
     asset = world(height_m=30.0).towers[2].pk
-    for body, field in (({"pattern": "orbit"}, "pattern"), ({}, "gsd_mm"), ({"pattern": "detail"}, "gsd_mm"), ({"pattern": "spans"}, "gsd_mm")):
+    for body, field in (
+        ({"pattern": "orbit"}, "pattern"),
+        ({}, "gsd_mm"),
+        ({"pattern": "detail"}, "gsd_mm"),
+        ({"pattern": "spans"}, "gsd_mm"),
+    ):
         response = post(client, "view-plans", {"asset": asset, "camera_key": ZOOM} | body)
         assert response.status_code == 400
         assert list(response.json()["error"]["details"]) == [field]
