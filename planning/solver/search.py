@@ -99,6 +99,7 @@ def best_found(
 
     def fly(chain: Chain) -> None:
         if search_s:
+            chain.step(share.now, 0.0, rounds)  # once at least, however long this thread had to wait for a processor
             while not is_over.is_set():
                 chain.step(share.now, 0.0, rounds)
             return

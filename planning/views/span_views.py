@@ -98,6 +98,8 @@ def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhot
     farthest_m = SPARE * min(standoff_m(camera, asked_gsd_m, focal_mm), REACH_M)
     found: list[tuple[float, ...]] = []
     if farthest_m > camera.nearest_focus_m:
+        if _area_m2(site) > MAX_PHOTOS * math.prod(footprint_m(camera, farthest_m, focal_mm)):
+            raise TooManyPhotos
         for side in sides_of(site):
             for pose in _Pass(side, site.keep_out, camera, focal_mm, farthest_m).poses():
                 found.append(pose)
@@ -105,6 +107,12 @@ def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhot
                     raise TooManyPhotos
     values = np.array(found).reshape(-1, 6)
     return SpanPhotos(Poses(values[:, :3], values[:, 3], values[:, 4]), values[:, 5], focal_mm)
+
+
+def _area_m2(site: TowerSite) -> float:
+    """Of the surfaces that stand for the wires."""
+    corners = wires_solid(site).triangles
+    return float(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()) / 2.0
 
 
 def _focal_mm(site: TowerSite, camera: Camera, asked_gsd_m: float) -> float:

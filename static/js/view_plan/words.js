@@ -126,6 +126,7 @@ export function nothingText({ pattern, camera, gsd_mm, clearance_m, coverage }) 
     return t(
       "This camera is too coarse from outside the clearance of swinging wires. Choose a longer lens or a coarser GSD.",
     );
+  if (pattern === "spans" && limit) return t("Most of the wires: {reason}.", { reason: LIMITS[limit] });
   return limit
     ? t("Most of the tower: {reason}.", { reason: LIMITS[limit] })
     : t("Choose another camera or a coarser GSD.");

@@ -83,7 +83,6 @@ def test_photos_of_every_part_are_chosen_taken_over_and_kept(visitor: Visitor, p
     expect(chip).to_have_attribute("title", re.compile("^Take photos, 10"))
     opens_menu(page)
     expect(page.get_by_role("button", name=PLAN_PHOTOS, exact=True)).to_have_attribute("aria-pressed", "false")
-    opens_menu(page)
     page.get_by_role("button", name=PLAN_PHOTOS, exact=True).click()
     panel.get_by_label("Photos", exact=True).select_option(label="Wires from both sides")
     panel.get_by_label("GSD", exact=True).fill("8")

@@ -132,6 +132,9 @@ def test_a_lens_that_is_too_coarse_outside_the_clearance_takes_none_and_says_why
 def test_what_takes_too_many_photos_is_refused_at_once() -> None:
     with pytest.raises(TooManyPhotos):
         photos_of("lattice, 380 kV, barrel", gsd_m=0.0015, camera=replace(ZOOM, focal_lengths_mm=(60.0,)))
+    narrow = replace(ZOOM, pixels_wide=2, pixels_high=2, sensor_width_mm=4.8, focal_lengths_mm=(300.0,))  # a picture of half a metre
+    with pytest.raises(TooManyPhotos):
+        photos_of("lattice, 380 kV, barrel", gsd_m=0.25, camera=narrow)
 
 
 def test_where_a_line_runs_beside_it_photos_are_taken_from_nearer_or_from_above() -> None:
