@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -38,8 +39,8 @@ OTHER_TOP_M: dict[str, float] = {
 class TowerOnMap:
     """The site in the frame around the tower's foot.
 
-    base_amsl_m: of the ground there, None without terrain data; then heights count from the foot, and the ground as level. ground_m: the
-    ground over that at places (n, 2) [m], NaN where it is not known.
+    base_amsl_m: of the ground there, None without terrain data there and under all supports of its surroundings; then heights count from
+    the foot, and unknown ground as level. ground_m: the ground over that at places (n, 2) [m], NaN where it is not known.
     """
 
     site: TowerSite
@@ -67,18 +68,19 @@ def tower_on_map(asset: Asset, views: ViewsRequest) -> TowerOnMap | None:
         return None
     frame = LocalFrame.around(*found.position[own[0]].tolist())
     base_m = float(ground_heights_m(found.position[own[:1]])[0]) if has_terrain() else np.nan
-    is_known = not np.isnan(base_m)
+    has_ground = not np.isnan(base_m)
     max_height_m = settings.FLIGHT_RULES.max_agl_m
 
     def ground_m(places: FloatArray) -> FloatArray:
-        return ground_heights_m(frame.to_degrees(places)) - base_m if is_known else np.full(len(places), np.nan)
+        return ground_heights_m(frame.to_degrees(places)) - base_m if has_ground else np.full(len(places), np.nan)
 
     band = GroundBand.level(min_height_m, max_height_m)
-    if is_known:
+    if has_ground:
         band = GroundBand.over(ground_m, min_height_m, max_height_m, around_m + GROUND_BEYOND_M)
-    feet_m = np.nan_to_num(ground_m(frame.to_metres(found.position)))
-    others = list(_others(box, frame, float(band.low_m.max())))
-    supports, spans = _stood(found, int(own[0]), frame, feet_m)
+    others = list(_others(box, frame, band))
+    feet_m = ground_m(frame.to_metres(found.position))
+    is_known = has_ground and not bool(np.isnan(feet_m).any())  # else the wires to a far support would be lower here than they are
+    supports, spans = _stood(found, int(own[0]), frame, np.nan_to_num(feet_m))
     site = tower_site(supports, spans, settings.CLEARANCE_RULES, band, others, lens_offset_m, around_m)
     return TowerOnMap(site, frame, base_m if is_known else None, ground_m)
 
@@ -99,18 +101,24 @@ def _stood(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray) -> 
     return supports, [(number[span.start], number[span.end]) for span in hung]
 
 
-def _others(box: Box, frame: LocalFrame, highest_ground_m: float) -> Iterator[Obstacle]:
-    """Railways, bridges, and lines that are not in use, as obstacles on the highest ground around."""
+def _highest_m(corners: FloatArray, band: GroundBand) -> float:
+    """The highest ground under lines from corner to corner, (n, 2), with the least height over it."""
+    return max(band.limits_between(*pair)[0] for pair in pairwise([*corners, corners[0]]))
+
+
+def _others(box: Box, frame: LocalFrame, band: GroundBand) -> Iterator[Obstacle]:
+    """Railways, bridges, and lines that are not in use, as obstacles on the highest ground under each."""
     rows = Asset.objects.filter(vanished_at=None, geometry__intersects=area_of(box)).exclude(kind=AssetKind.TOWER)
     for row in rows.annotate(wkb=AsWKB("geometry")).only("kind", "height_m", "max_voltage_v", "is_flyable"):
         if row.kind == AssetKind.LINE and row.is_flyable:
             continue
         shape = shapely.intersection(shapely.force_2d(shapely.from_wkb(bytes(row.wkb))), shapely.box(*box))
-        top_m = highest_ground_m + (row.height_m or OTHER_TOP_M.get(row.kind, HIGHEST_VOLTAGE_HEIGHT_M))
+        height_m = row.height_m or OTHER_TOP_M.get(row.kind, HIGHEST_VOLTAGE_HEIGHT_M)
         beside_m = WIRES_BESIDE_M if row.kind == AssetKind.LINE else TRACK_BESIDE_M if row.kind == AssetKind.RAILWAY else 0.0
         for part in shapely.get_parts(shape):
             corners = frame.to_metres(shapely.get_coordinates(part))
             if row.kind == AssetKind.BRIDGE and len(corners):
-                yield Obstacle(corners, beside_m, top_m)
+                yield Obstacle(corners, beside_m, _highest_m(corners, band) + height_m)
             else:
-                yield from (Obstacle(corners[place : place + 2], beside_m, top_m) for place in range(len(corners) - 1))
+                pieces = (corners[place : place + 2] for place in range(len(corners) - 1))
+                yield from (Obstacle(piece, beside_m, _highest_m(piece, band) + height_m) for piece in pieces)

@@ -88,13 +88,13 @@ class ViewsInputSerializer(KnownFieldsSerializer):
     pattern = serializers.ChoiceField(
         choices=[own.value for own in ViewPattern], required=False,
         help_text="detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the "
-        "middle of each span, from both sides",
+        "middle of each span, at most 500 m, from both sides",
     )  # fmt: skip
     camera = CameraSerializer(required=False)
     camera_key = serializers.CharField(required=False, help_text="of the catalogue, in place of `camera`")
     gsd_mm = BetweenField(
         GSDS_MM, required=False,
-        help_text="ground sample distance: what a pixel shows at most, across the optical axis; needed but for an overview, which has 50",
+        help_text="ground sample distance: what a pixel shows at most, across the optical axis; required, except for an overview (50)",
     )  # fmt: skip
     min_height_m = BetweenField(HEIGHTS_M, default=4.0, help_text="of the UAV above the ground")
 
@@ -265,7 +265,9 @@ class ViewPlanSerializer(ViewsSerializer):
     has_terrain = serializers.BooleanField(help_text="without, the ground counts as level with the tower's foot")
     model = TowerModelSerializer()
     photos = PlannedPhotoSerializer(many=True, help_text="in the order in which they are taken")
-    photos_bound = serializers.IntegerField(help_text="no choice of fewer photos among the candidates shows enough")
+    photos_bound = serializers.IntegerField(
+        help_text="no choice of fewer photos among the candidates shows enough; of overviews and wires the number of photos"
+    )
     route = serializers.ListField(
         child=serializers.ListField(child=serializers.FloatField()),
         help_text="lon, lat, and metres above the ground at the tower; from above the tower and back to there",

@@ -58,7 +58,7 @@ class TakenByTarget:
 
 
 def photographed_targets(mission: Mission) -> QuerySet[InspectionTarget]:
-    """Return the targets of which every part is photographed."""
+    """Return the targets that are photographed from planned poses."""
     return InspectionTarget.objects.filter(mission=mission, task__has_key="views").select_related("asset")
 
 

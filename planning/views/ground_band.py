@@ -22,17 +22,18 @@ class GroundBand:
     """Least and greatest heights [m] over the asset's foot, float64 (k, k), in cells from the south-west corner of a square around it.
 
     Each cell has the highest and the lowest ground in it and in the cells beside it. Beyond the square the cell at its edge counts.
-    half_side_m: of the square.
+    half_side_m: of the square; min_height_m: by which low_m is over the ground.
     """
 
     low_m: FloatArray
     high_m: FloatArray
     half_side_m: float = HALF_SIDE_M
+    min_height_m: float = 0.0
 
     @classmethod
     def level(cls, min_height_m: float, max_height_m: float) -> "GroundBand":
         """Over ground that is as high everywhere as at the foot."""
-        return cls(np.full((1, 1), min_height_m), np.full((1, 1), max_height_m))
+        return cls(np.full((1, 1), min_height_m), np.full((1, 1), max_height_m), min_height_m=min_height_m)
 
     @classmethod
     def over(
@@ -49,13 +50,17 @@ class GroundBand:
         highest_m, lowest_m = (float(known.max()), float(known.min())) if len(known) else (0.0, 0.0)
         above = maximum_filter(np.where(np.isnan(heights_m), highest_m, heights_m), size=3)
         below = minimum_filter(np.where(np.isnan(heights_m), lowest_m, heights_m), size=3)
-        return cls(above + min_height_m, below + max_height_m, half_side_m)
+        return cls(above + min_height_m, below + max_height_m, half_side_m, min_height_m)
 
     def limits_at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Least and greatest height [m] at places (n, 2)."""
         last = len(self.low_m) - 1
         cell = np.clip(np.rint((places + self.half_side_m) / CELL_M), 0, last).astype(np.int64)
         return self.low_m[cell[:, 1], cell[:, 0]], self.high_m[cell[:, 1], cell[:, 0]]
+
+    def ground_m(self, place: FloatArray) -> float:
+        """The height [m] of the ground at a place, (2,), or beside it."""
+        return float(self.limits_at(place[None, :])[0][0]) - self.min_height_m
 
     def leaves_out(self, points: FloatArray) -> BoolArray:
         """Whether each point, (n, 3), is lower or higher than allowed there."""

@@ -30,7 +30,7 @@ class Component(StrEnum):
 
 
 # Patches of these are larger, by this factor: there is much of them, and it looks the same.
-COARSER = {Component.BODY: 1.5, Component.GUY: 2.0, Component.WIRES: 7.0}
+COARSER = {Component.BODY: 1.5, Component.GUY: 2.0, Component.WIRES: 10.0}
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ import numpy as np
 
 from planning.views.camera import Camera, footprint_m, standoff_m
 from planning.views.detail_views import MAX_PHOTOS, TooManyPhotos
+from planning.views.ground_band import GroundBand
 from planning.views.keep_out import KeepOut
 from planning.views.proof import REACH_M
 from planning.views.site import TowerSite, WireBand
@@ -26,7 +27,9 @@ BESIDE_M = 1.0  # the clearance, at which the shortest focal length is to reach 
 SPARE = 0.97  # of the farthest distance, for errors of position
 MAX_HALF_SPAN_M = 500.0  # of a span, up to where its wires are photographed
 SKIPPED_M = 3.0  # along the span, where there is no place for a photo
-PIECE_M = 5.0  # of the surface
+PIECE_M = 10.0  # of the surface
+LOWEST_M = 4.0  # above the ground, of wires at their hottest
+MAX_ROWS = 50  # of photos above one another
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,7 @@ class _Side:
     band: WireBand
     along: FloatArray
     inward: FloatArray
+    ground: GroundBand
 
     @property
     def yaw_deg(self) -> float:
@@ -48,10 +52,17 @@ class _Side:
     def middle_m(self) -> float:
         return min(self.band.length_m / 2.0, MAX_HALF_SPAN_M)
 
+    def heights_m(self, along_m: float) -> tuple[float, float]:
+        """Between which heights wires are so far along the span, at least LOWEST_M over the ground where they are not fastened lower."""
+        low_m, high_m = self.band.heights_m(along_m)
+        fastened_m = min(self.band.start_low_m, self.band.end_low_m)
+        over_ground_m = self.ground.ground_m(self.on_axis(along_m, 0.0)[:2]) + LOWEST_M
+        return max(low_m, min(over_ground_m, fastened_m)), high_m
+
     def extremes_m(self, from_m: float, to_m: float) -> tuple[float, float]:
         """The lowest and the highest wire between two places on the half of the span at the tower."""
         places_m = np.clip(np.linspace(from_m, to_m, 5), 0.0, self.middle_m)
-        heights_m = np.array([self.band.heights_m(along_m) for along_m in places_m.tolist()])
+        heights_m = np.array([self.heights_m(along_m) for along_m in places_m.tolist()])
         return float(heights_m[:, 0].min()), float(heights_m[:, 1].max())
 
 
@@ -60,7 +71,7 @@ def sides_of(site: TowerSite) -> Iterator[_Side]:
     for band in site.bands:
         along = (np.array(band.span.end) - np.array(band.span.start)) / band.length_m
         for turn in (1.0, -1.0):
-            yield _Side(band, along, turn * np.array([along[1], -along[0]]))
+            yield _Side(band, along, turn * np.array([along[1], -along[0]]), site.keep_out.band)
 
 
 def wires_solid(site: TowerSite) -> Solid:
@@ -73,7 +84,7 @@ def wires_solid(site: TowerSite) -> Solid:
     sides = list(sides_of(site))
     for number, side in enumerate(sides):
         cuts_m = np.linspace(0.0, side.middle_m, math.ceil(side.middle_m / PIECE_M) + 1).tolist()
-        edges = [[side.on_axis(along_m, height_m) for height_m in side.band.heights_m(along_m)] for along_m in cuts_m]
+        edges = [[side.on_axis(along_m, height_m) for height_m in side.heights_m(along_m)] for along_m in cuts_m]
         for (low, high), (next_low, next_high) in pairwise(edges):
             pair = np.array([(low, next_low, next_high), (low, next_high, high)])
             normal = np.cross(pair[0, 1] - pair[0, 0], pair[0, 2] - pair[0, 0])
@@ -97,9 +108,7 @@ def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhot
     focal_mm = _focal_mm(site, camera, asked_gsd_m)
     farthest_m = SPARE * min(standoff_m(camera, asked_gsd_m, focal_mm), REACH_M)
     found: list[tuple[float, ...]] = []
-    if farthest_m > camera.nearest_focus_m:
-        if _area_m2(site) > MAX_PHOTOS * math.prod(footprint_m(camera, farthest_m, focal_mm)):
-            raise TooManyPhotos
+    if farthest_m > max(camera.nearest_focus_m, site.clearance_m):
         for side in sides_of(site):
             for pose in _Pass(side, site.keep_out, camera, focal_mm, farthest_m).poses():
                 found.append(pose)
@@ -107,12 +116,6 @@ def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhot
                     raise TooManyPhotos
     values = np.array(found).reshape(-1, 6)
     return SpanPhotos(Poses(values[:, :3], values[:, 3], values[:, 4]), values[:, 5], focal_mm)
-
-
-def _area_m2(site: TowerSite) -> float:
-    """Of the surfaces that stand for the wires."""
-    corners = wires_solid(site).triangles
-    return float(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()) / 2.0
 
 
 def _focal_mm(site: TowerSite, camera: Camera, asked_gsd_m: float) -> float:
@@ -129,7 +132,7 @@ def _outside_m(side: _Side, keep_out: KeepOut) -> float:
     """How far from the axis the clearance of the wires ends in the middle of the span, where they swing the most; at most REACH_M."""
     middle_m = side.middle_m
     away_m = np.arange(0.0, REACH_M, 0.5)
-    low_m, _ = side.band.heights_m(middle_m)
+    low_m, _ = side.heights_m(middle_m)
     places = side.on_axis(middle_m, low_m) - away_m[:, None] * np.append(side.inward, 0.0)
     clear = np.flatnonzero(~keep_out.in_column(places))
     return float(away_m[clear[0]]) if len(clear) else REACH_M
@@ -151,7 +154,8 @@ class _Pass:
         while shown_m < self.side.middle_m:
             wide_m, column = self._column(shown_m, self._wide(self.farthest_m))
             if column:  # a nearer place shows less, so it has to be less far along
-                wide_m, column = self._column(shown_m, wide_m)
+                nearer_m, nearer = self._column(shown_m, wide_m)
+                wide_m, column = (nearer_m, nearer) if nearer else (wide_m, column)
             yield from column
             shown_m += wide_m * (1.0 - OVERLAP) if column else SKIPPED_M
 
@@ -178,6 +182,8 @@ class _Pass:
         """How many photos above one another show these heights from so far away, and those that there is a place for."""
         row_m = self._high(away_m)
         rows = max(1, math.ceil((high_m - low_m - row_m) / (row_m * (1.0 - OVERLAP))) + 1)
+        if rows > MAX_ROWS:
+            raise TooManyPhotos
         half_m = min(row_m, high_m - low_m) / 2.0
         gimbal = self.camera.gimbal
         pitches_deg = np.array([own for own in PITCHES_DEG if gimbal.pitch_min_deg <= own <= gimbal.pitch_max_deg])

@@ -8781,7 +8781,7 @@ export interface components {
             model: components["schemas"]["TowerModel"];
             /** @description in the order in which they are taken */
             photos: components["schemas"]["PlannedPhoto"][];
-            /** @description no choice of fewer photos among the candidates shows enough */
+            /** @description no choice of fewer photos among the candidates shows enough; of overviews and wires the number of photos */
             photos_bound: number;
             /** @description lon, lat, and metres above the ground at the tower; from above the tower and back to there */
             route: number[][];
@@ -8795,7 +8795,7 @@ export interface components {
         };
         ViewPlanInputRequest: {
             /**
-             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, from both sides
+             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, at most 500 m, from both sides
              *
              *     * `detail` - detail
              *     * `overview` - overview
@@ -8807,7 +8807,7 @@ export interface components {
             camera_key?: string;
             /**
              * Format: double
-             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed but for an overview, which has 50
+             * @description ground sample distance: what a pixel shows at most, across the optical axis; required, except for an overview (50)
              */
             gsd_mm?: number;
             /**
@@ -8848,7 +8848,7 @@ export interface components {
         /** @description Photos of every part, of the whole from four sides, or of the wires: with which camera, and how fine. */
         ViewsInputRequest: {
             /**
-             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, from both sides
+             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, at most 500 m, from both sides
              *
              *     * `detail` - detail
              *     * `overview` - overview
@@ -8860,7 +8860,7 @@ export interface components {
             camera_key?: string;
             /**
              * Format: double
-             * @description ground sample distance: what a pixel shows at most, across the optical axis; needed but for an overview, which has 50
+             * @description ground sample distance: what a pixel shows at most, across the optical axis; required, except for an overview (50)
              */
             gsd_mm?: number;
             /**

@@ -137,6 +137,18 @@ def test_what_takes_too_many_photos_is_refused_at_once() -> None:
         photos_of("lattice, 380 kV, barrel", gsd_m=0.25, camera=narrow)
 
 
+def test_a_camera_that_is_too_coarse_even_at_the_clearance_takes_none_however_many_it_would_be() -> None:
+    thermal = replace(WIDE, pixels_wide=640, pixels_high=480)
+    assert not len(photos_of("lattice, 380 kV, barrel", thermal, gsd_m=0.002).poses)
+
+
+def test_wires_are_looked_for_above_the_ground() -> None:
+    site = stand("wooden pole, 20 kV").site
+    long_span = replace(site.bands[0].span, end=(0.0, 1_000.0), sag_m=1_000.0**2 / (8.0 * 800.0))
+    corners = wires_solid(replace(site, bands=(replace(site.bands[0], span=long_span),))).triangles
+    assert corners[..., 2].min() >= 4.0
+
+
 def test_where_a_line_runs_beside_it_photos_are_taken_from_nearer_or_from_above() -> None:
     stands = stand("tubular, 110 kV, alternating")
     site = replace(stands.site, keep_out=replace(stands.keep_out, band=GroundBand.level(45.0, MAX_HEIGHT_M)))
