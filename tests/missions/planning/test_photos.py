@@ -172,6 +172,12 @@ def test_without_terrain_nobody_flies_beside_wires(client: Client) -> None:
     assert unassigned(made(client, body(photos_of(world(height_m=30.0).towers[2])))) == "no_photos: photos_need_terrain"
 
 
+def test_terrain_that_ends_before_the_next_tower_is_not_enough(client: Client, tmp_path: Path) -> None:
+    here = world(height_m=30.0)
+    terrain(tmp_path, origin=(here.towers[2].centre.x - 0.002, 56.15))
+    assert unassigned(made(client, body(photos_of(here.towers[2])))) == "no_photos: photos_need_terrain"
+
+
 def test_terrain_that_ends_before_the_start_is_refused(client: Client, tmp_path: Path) -> None:
     here = world(height_m=30.0)
     terrain(tmp_path, origin=(10.004, 56.15))
