@@ -28,7 +28,7 @@ from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.jobs.planning_lock import hold_planning_lock
 
 KEPT_S = 7 * 86_400
-VERSION = 3  # counts the changes of what a flight is planned by, or is kept as
+VERSION = 4  # counts the changes of what a flight is planned by, or is kept as
 
 AnyTarget = TypeVar("AnyTarget", bound=ResolvedTarget)
 OnPhotos = Callable[[int, int], None]  # of targets with photos: so many are planned, of so many
