@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -101,13 +100,8 @@ def _stood(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray) -> 
     return supports, [(number[span.start], number[span.end]) for span in hung]
 
 
-def _highest_m(corners: FloatArray, band: GroundBand) -> float:
-    """The highest ground under lines from corner to corner, (n, 2), with the least height over it."""
-    return max(band.limits_between(*pair)[0] for pair in pairwise([*corners, corners[0]]))
-
-
 def _others(box: Box, frame: LocalFrame, band: GroundBand) -> Iterator[Obstacle]:
-    """Railways, bridges, and lines that are not in use, as obstacles on the highest ground under each."""
+    """Railways, bridges, and lines that are not in use, as obstacles on the highest ground of the box around each."""
     rows = Asset.objects.filter(vanished_at=None, geometry__intersects=area_of(box)).exclude(kind=AssetKind.TOWER)
     for row in rows.annotate(wkb=AsWKB("geometry")).only("kind", "height_m", "max_voltage_v", "is_flyable"):
         if row.kind == AssetKind.LINE and row.is_flyable:
@@ -118,7 +112,7 @@ def _others(box: Box, frame: LocalFrame, band: GroundBand) -> Iterator[Obstacle]
         for part in shapely.get_parts(shape):
             corners = frame.to_metres(shapely.get_coordinates(part))
             if row.kind == AssetKind.BRIDGE and len(corners):
-                yield Obstacle(corners, beside_m, _highest_m(corners, band) + height_m)
+                yield Obstacle(corners, beside_m, band.highest_low_m(corners) + height_m)
             else:
                 pieces = (corners[place : place + 2] for place in range(len(corners) - 1))
-                yield from (Obstacle(piece, beside_m, _highest_m(piece, band) + height_m) for piece in pieces)
+                yield from (Obstacle(piece, beside_m, band.highest_low_m(piece) + height_m) for piece in pieces)

@@ -62,6 +62,13 @@ class GroundBand:
         """The height [m] of the ground at a place, (2,), or beside it."""
         return float(self.limits_at(place[None, :])[0][0]) - self.min_height_m
 
+    def highest_low_m(self, places: FloatArray) -> float:
+        """The highest least height [m] in the box around places (n, 2)."""
+        last = len(self.low_m) - 1
+        box = np.array([np.floor(places.min(axis=0) + self.half_side_m), np.ceil(places.max(axis=0) + self.half_side_m)])
+        (west, south), (east, north) = np.clip(np.rint(box / CELL_M), 0, last).astype(np.int64).tolist()
+        return float(self.low_m[south : north + 1, west : east + 1].max())
+
     def leaves_out(self, points: FloatArray) -> BoolArray:
         """Whether each point, (n, 3), is lower or higher than allowed there."""
         low_m, high_m = self.limits_at(points[:, :2])
