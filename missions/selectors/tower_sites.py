@@ -79,7 +79,7 @@ def tower_on_map(asset: Asset, views: ViewsRequest) -> TowerOnMap | None:
     others = list(_others(box, frame, band))
     feet_m = ground_m(frame.to_metres(found.position))
     is_known = has_ground and not bool(np.isnan(feet_m).any())  # else the wires to a far support would be lower here than they are
-    supports, spans = _stood(found, int(own[0]), frame, np.nan_to_num(feet_m))
+    supports, spans = _standing(found, int(own[0]), frame, np.nan_to_num(feet_m))
     site = tower_site(supports, spans, settings.CLEARANCE_RULES, band, others, lens_offset_m, around_m)
     return TowerOnMap(site, frame, base_m if is_known else None, ground_m)
 
@@ -90,7 +90,7 @@ def _box(asset: Asset, around_m: float) -> Box:
     return (*corners[0].tolist(), *corners[1].tolist())
 
 
-def _stood(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray) -> tuple[list[StandingSupport], list[tuple[int, int]]]:
+def _standing(found: Overhead, own: int, frame: LocalFrame, foot_m: FloatArray) -> tuple[list[StandingSupport], list[tuple[int, int]]]:
     """The supports, the inspected one first, and the spans between their places."""
     drawn, hung, _ = supports_and_spans(found)
     places = frame.to_metres(found.position)

@@ -28,8 +28,8 @@ LIMITS = tuple(Limit)
 
 
 @dataclass(frozen=True)
-class LookBack:
-    """From where a patch is looked at to learn whether it can be seen.
+class ViewSampling:
+    """The viewpoints that are tried for a patch, to learn whether it can be seen.
 
     rings_deg: from its normal; around: directions in each ring; shares: of the farthest distance.
     """
@@ -57,13 +57,13 @@ class Limits:
 
 
 def limits_of(
-    patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Camera, farthest_m: float, look_back: LookBack = LookBack()
+    patches: Patches, keep_out: KeepOut, caster: RayCaster, camera: Camera, farthest_m: float, sampling: ViewSampling = ViewSampling()
 ) -> Limits:
     """Return why each patch cannot be photographed, and places from where it can.
 
     Looks back from the patch in directions within the greatest angle, at distances up to the farthest.
     """
-    directions = _directions(patches.normal, look_back)
+    directions = _directions(patches.normal, sampling)
     start = patches.centre + OFF_SURFACE_M * patches.normal
     pitch_min, pitch_max = camera.gimbal.pitch_min_deg, camera.gimbal.pitch_max_deg
     spare_deg = np.degrees(np.arctan(camera.sensor_height_mm / (2.0 * camera.focal_lengths_mm[-1])))
@@ -75,7 +75,7 @@ def limits_of(
         free[open_] = caster.is_free(start[open_], start[open_] + direction[open_] * BESIDE_M)
         pitch = -np.degrees(np.arcsin(np.clip(direction[:, 2], -1.0, 1.0)))
         aimed = (pitch >= pitch_min - spare_deg) & (pitch <= pitch_max + spare_deg)
-        for share in look_back.shares:
+        for share in sampling.shares:
             if share * farthest_m < camera.nearest_focus_m:
                 continue
             place = patches.centre + direction * share * farthest_m
@@ -91,16 +91,16 @@ def limits_of(
     return Limits(limit, np.concatenate(places), np.concatenate(of_patch))
 
 
-def _directions(normal: FloatArray, look_back: LookBack) -> FloatArray:
+def _directions(normal: FloatArray, sampling: ViewSampling) -> FloatArray:
     """Unit vectors around each normal, (p, directions, 3)."""
     aside = np.where(np.abs(normal[:, 2:]) < 0.9, np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
     first = np.cross(normal, aside)
     first /= np.linalg.norm(first, axis=1)[:, None]
     second = np.cross(normal, first)
     rings = [normal]
-    for ring_deg in look_back.rings_deg[1:]:
+    for ring_deg in sampling.rings_deg[1:]:
         assert ring_deg < MAX_ANGLE_DEG  # noqa: S101 - figures of this module
-        for turn in 2.0 * np.pi * np.arange(look_back.around) / look_back.around:
+        for turn in 2.0 * np.pi * np.arange(sampling.around) / sampling.around:
             tilt = np.radians(ring_deg)
             rings.append(np.cos(tilt) * normal + np.sin(tilt) * (np.cos(turn) * first + np.sin(turn) * second))
     return np.stack(rings, axis=1)

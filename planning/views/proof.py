@@ -14,7 +14,7 @@ import numpy as np
 from inspection.geodesy.local_frame import LocalFrame
 from planning.views.camera import Camera, Lens, standoff_m
 from planning.views.coverage import ComponentCoverage, Coverage, by_component, coverage_of
-from planning.views.limits import LookBack, limits_of
+from planning.views.limits import ViewSampling, limits_of
 from planning.views.site import TowerSite
 from planning.views.solids import IntArray, Patches, Solid, patches_of
 from planning.views.visibility import Poses, RayCaster
@@ -23,7 +23,7 @@ MIN_PITCH_DEG = -80.0
 REACH_M = 80.0  # from the asset's axis, of candidate positions
 PROOF_PATCH_M = 1.0  # sides of the patches on which coverage is measured
 MAX_AWAY_M = 2.0 * REACH_M  # from the tower's axis: beyond, a photo is of something else, or its position is wrong
-AT_WIRES = LookBack((0.0, 30.0, 58.0), 8, (0.4, 0.7, 0.999))  # of which there is much that looks the same
+WIRE_SAMPLING = ViewSampling((0.0, 30.0, 58.0), 8, (0.4, 0.7, 0.999))  # of which there is much that looks the same
 MAX_ROLL_DEG = 3.0  # turns the edge of a picture by as much as the margin within which photos are planned
 MAX_AMSL_M = 10_000.0
 
@@ -105,8 +105,8 @@ def proof_surface(site: TowerSite, camera: Camera, asked_gsd_m: float, wires: So
     """Return the surface on which photos with this camera are proven: of the tower, or its wires. camera: as flown_camera has it."""
     solid = site.solid if wires is None else wires
     patches, caster = patches_of(solid, PROOF_PATCH_M), RayCaster([site.solid])
-    look_back = LookBack() if wires is None else AT_WIRES
-    limits = limits_of(patches, site.keep_out, caster, camera, reach_m(camera, asked_gsd_m), look_back)
+    sampling = ViewSampling() if wires is None else WIRE_SAMPLING
+    limits = limits_of(patches, site.keep_out, caster, camera, reach_m(camera, asked_gsd_m), sampling)
     away_m = MAX_AWAY_M if wires is None else max(MAX_AWAY_M, site.around_m)
     return ProofSurface(solid, camera, asked_gsd_m, patches, caster, limits.limit, away_m)
 

@@ -22,9 +22,9 @@ from planning.views.visibility import FRAME_MARGIN, Poses, axes_of
 
 OVERLAP = 0.3  # of neighbouring photos along the span, and of one above the other
 PITCHES_DEG = (-10.0, -20.0, 0.0, -30.0, 10.0, -40.0, -50.0)  # the first that heights and what stands there allow
-NEARER = (1.0, 0.8, 0.6, 0.45)  # as shares of the farthest distance, where it is barred
-BESIDE_M = 1.0  # the clearance, at which the shortest focal length is to reach the ground sample distance
-SPARE = 0.97  # of the farthest distance, for errors of position
+DISTANCE_SHARES = (1.0, 0.8, 0.6, 0.45)  # of the farthest distance; the first at which a photo has a place
+LENS_MARGIN_M = 1.0  # beyond the clearance: where a focal length has to reach the ground sample distance
+DISTANCE_MARGIN = 0.97  # share of the farthest distance that is used, for errors of position
 MAX_HALF_SPAN_M = 500.0  # of a span, up to where its wires are photographed
 SKIPPED_M = 3.0  # along the span, where there is no place for a photo
 PIECE_M = 10.0  # of the surface
@@ -106,7 +106,7 @@ class SpanPhotos:
 def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhotos:
     """Return photos of both sides of each half span; none where no place is allowed. Raises TooManyPhotos."""
     focal_mm = _focal_mm(site, camera, asked_gsd_m)
-    farthest_m = SPARE * min(standoff_m(camera, asked_gsd_m, focal_mm), REACH_M)
+    farthest_m = DISTANCE_MARGIN * min(standoff_m(camera, asked_gsd_m, focal_mm), REACH_M)
     found: list[tuple[float, ...]] = []
     if farthest_m > max(camera.nearest_focus_m, site.clearance_m):
         for side in sides_of(site):
@@ -120,10 +120,10 @@ def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhot
 
 def _focal_mm(site: TowerSite, camera: Camera, asked_gsd_m: float) -> float:
     """The shortest focal length that reaches the ground sample distance from outside of the clearance, else the longest."""
-    needed_m = max((_outside_m(side, site.keep_out) for side in sides_of(site)), default=0.0) + BESIDE_M
-    steep = math.cos(math.radians(PITCHES_DEG[0]))
+    needed_m = max((_outside_m(side, site.keep_out) for side in sides_of(site)), default=0.0) + LENS_MARGIN_M
+    level_share = math.cos(math.radians(PITCHES_DEG[0]))
     for focal_mm in camera.focal_lengths_mm:
-        if SPARE * steep * min(standoff_m(camera, asked_gsd_m, focal_mm), REACH_M) >= needed_m:
+        if DISTANCE_MARGIN * level_share * min(standoff_m(camera, asked_gsd_m, focal_mm), REACH_M) >= needed_m:
             return focal_mm
     return camera.focal_lengths_mm[-1]
 
@@ -170,7 +170,7 @@ class _Pass:
         at_m = min(shown_m + wide_m * (0.5 - OVERLAP / 2.0), self.side.middle_m)
         low_m, high_m = self.side.extremes_m(at_m - wide_m / 2.0, at_m + wide_m / 2.0)
         best_share, best = 0.0, (wide_m, list[tuple[float, ...]]())
-        for share in NEARER:
+        for share in DISTANCE_SHARES:
             rows, found = self._stacked(at_m, low_m, high_m, share * self.farthest_m)
             if len(found) / rows > best_share:
                 best_share, best = len(found) / rows, (self._wide(min(pose[-1] for pose in found)), found)
