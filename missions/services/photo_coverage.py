@@ -118,23 +118,19 @@ def _over_sea(own: PhotoOfMission, take_off_m: Mapping[tuple[int, int], float]) 
 
 
 class _Matching:
-    """Gives photos to targets: by their waypoint, unless they are near another tower and not near that one; else to the nearest tower.
+    """Gives photos to targets: by their waypoint, unless they are far from there and near another target; else by the nearest planned one.
 
-    Near is up to MAX_AWAY_M, or a little more than the farthest photo of the tower is planned at.
+    Near is up to MAX_AWAY_M. A target of which no photos are planned counts from its tower.
     """
 
     def __init__(self, planned: Mapping[int, Sequence[PlannedPhoto]], centres: Mapping[int, tuple[float, ...]]) -> None:
         self._target = {(one.uav, one.waypoint): target for target, photos in planned.items() for one in photos}
-        self._keys = list(centres)
-        self._frame = LocalFrame.around(*np.array(list(centres.values())).mean(axis=0).tolist()) if centres else None
-        self._at = None if self._frame is None else self._frame.to_metres(np.array(list(centres.values()), dtype=np.float64))
-        self._near_m = np.array([self._farthest_m(place, planned.get(key, ())) for place, key in enumerate(self._keys)])
-
-    def _farthest_m(self, place: int, photos: Sequence[PlannedPhoto]) -> float:
-        if self._frame is None or self._at is None or not photos:
-            return MAX_AWAY_M
-        away_m = self._frame.to_metres(np.array([(one.photo.lon, one.photo.lat) for one in photos], dtype=np.float64)) - self._at[place]
-        return max(MAX_AWAY_M, float(np.hypot(*away_m.T).max()) + SAME_PLACE_M)
+        rows = [(target, lon, lat) for target, (lon, lat) in centres.items() if not planned.get(target)]
+        rows += [(target, one.photo.lon or 0.0, one.photo.lat or 0.0) for target, photos in planned.items() for one in photos]
+        self._keys = np.array([target for target, _, _ in rows])
+        places = np.array([(lon, lat) for _, lon, lat in rows], dtype=np.float64).reshape(-1, 2)
+        self._frame = LocalFrame.around(*places.mean(axis=0).tolist()) if len(places) else None
+        self._places = places if self._frame is None else self._frame.to_metres(places)
 
     def of(self, photos: Sequence[PhotoOfMission]) -> dict[int, list[PhotoOfMission]]:
         found: dict[int, list[PhotoOfMission]] = {}
@@ -146,15 +142,13 @@ class _Matching:
 
     def _target_of(self, own: PhotoOfMission) -> int | None:
         by_waypoint = None if own.uav is None or own.waypoint is None else self._target.get((own.uav, own.waypoint))
-        near = self._near(own.photo)
-        return by_waypoint if by_waypoint is not None and (not near or by_waypoint in near) else next(iter(near), None)
-
-    def _near(self, photo: TakenPhoto) -> list[int]:
-        """The targets whose towers are near, the nearest first."""
-        if self._frame is None or self._at is None or photo.lon is None or photo.lat is None:
-            return []
-        away_m = np.linalg.norm(self._at - self._frame.to_metres(np.array([[photo.lon, photo.lat]])), axis=1)
-        return [self._keys[place] for place in np.argsort(away_m).tolist() if away_m[place] <= self._near_m[place]]
+        if self._frame is None or own.photo.lon is None or own.photo.lat is None:
+            return by_waypoint
+        away_m = np.linalg.norm(self._places - self._frame.to_metres(np.array([[own.photo.lon, own.photo.lat]])), axis=1)
+        near = away_m <= MAX_AWAY_M
+        if not near.any() or (self._keys[near] == by_waypoint).any():
+            return by_waypoint
+        return int(self._keys[away_m.argmin()])
 
 
 def _of_target(target: InspectionTarget, taken: TakenByTarget, version: DatasetVersion) -> Json:

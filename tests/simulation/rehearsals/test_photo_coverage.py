@@ -157,6 +157,22 @@ def test_photos_of_wires_flown_in_wind_show_what_was_promised(here: World, clien
     assert (windy["deviations"], windy["not_counted"]) == ([], [])
 
 
+@pytest.mark.parametrize("beyond_deg", [0.0, 0.00003], ids=["in place", "2 m nearer to the other tower"])
+def test_photos_of_wires_without_a_waypoint_count_for_the_tower_that_they_are_planned_for(
+    here: World, client: Client, beyond_deg: float
+) -> None:
+    wires = {"kind": "photo", "views": {"pattern": "spans", "gsd_mm": 8, "camera": camera_to_json(LONG)}}
+    mission = planned(client, *({"asset": here.towers[place].pk, "task": wires} for place in (2, 3)), camera=LONG)
+    middle = (here.towers[2].centre.x + here.towers[3].centre.x) / 2.0
+    rows = photo_waypoints(mission, target=1)
+    own = min(rows, key=lambda row: abs(row.position.x - middle))
+    for row in rows:
+        row.position.x -= beyond_deg if row is own else 0.0
+    captured(mission, rows, waypoint_sequence=None)
+    first, second = coverage(client, mission)
+    assert (first["achieved"]["photos"], second["achieved"]["photos"]) == (0, len(rows))
+
+
 def test_photos_that_a_rehearsal_missed_or_took_of_something_else_are_named(here: World, client: Client, person: User) -> None:
     mission = planned(client, photographed(here.towers[2]))
     rehearsed(mission, person, "calm")
