@@ -23,7 +23,7 @@ class LineSerializer(serializers.Serializer):
 class TaskOutputSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = serializers.FloatField()
-    views = ViewsSerializer(required=False, help_text="of a target of which every part is photographed")
+    views = ViewsSerializer(required=False, help_text="of a target that is photographed from planned poses")
     view = ViewSerializer(required=False, help_text="of a waypoint at which one of these photos is taken")
 
 

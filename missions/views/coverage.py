@@ -72,7 +72,7 @@ class MissionCoverageFile(APIView):
         mission = mission_or_404(request.user, mission_id)
         targets = list(photographed_targets(mission).order_by("sequence"))
         if not targets:
-            raise ApiProblem(409, "no_photos", _("No target of this mission is photographed part by part."))
+            raise ApiProblem(409, "no_photos", _("No target of this mission has planned photos."))
         pieces = csv_pieces(COLUMNS, _rows(_coverage(request, mission, targets)))
         response = StreamingHttpResponse(pieces, content_type="text/csv; charset=utf-8")
         response["Content-Disposition"] = f'attachment; filename="{slugify(mission.name) or "mission"}-coverage.csv"'

@@ -7735,7 +7735,7 @@ export interface components {
             kind: components["schemas"]["TaskKind"];
             /** Format: double */
             hold_s: number;
-            /** @description of a target of which every part is photographed */
+            /** @description of a target that is photographed from planned poses */
             views?: components["schemas"]["Views"];
             /** @description of a waypoint at which one of these photos is taken */
             view?: components["schemas"]["View"];
@@ -7745,7 +7745,7 @@ export interface components {
             kind: components["schemas"]["TaskKind"];
             /** Format: double */
             hold_s?: number;
-            /** @description with photo, of a power tower: photos of every part of it */
+            /** @description with photo, of a power tower: photos of it or its wires from planned poses */
             views?: components["schemas"]["ViewsInputRequest"] | null;
         };
         /**

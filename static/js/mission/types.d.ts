@@ -63,7 +63,7 @@ export interface Task {
   views?: Views | null;
 }
 
-/** Photos of a target: of every part or an overview, with which camera, how fine, and how low the UAV may come. */
+/** Photos of a target: of every part, an overview or its wires, with which camera, how fine, and how low the UAV may come. */
 export interface Views {
   pattern?: ViewPattern;
   gsd_mm: number;

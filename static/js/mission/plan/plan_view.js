@@ -64,7 +64,7 @@ export function routesOf(plan) {
   }));
 }
 
-/** Where photos of every part are taken on routes, and where the camera looks. @param {readonly Pick<Route, "waypoints">[]} routes */
+/** Where planned photos are taken on routes, and where the camera looks. @param {readonly Pick<Route, "waypoints">[]} routes */
 export const photosOf = (routes) =>
   routes.flatMap(({ waypoints }) =>
     waypoints.flatMap(({ position, task }) => (task?.view ? [{ position, yaw_deg: task.view.yaw_deg }] : [])),
