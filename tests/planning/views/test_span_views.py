@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from planning.views.camera import Camera, Gimbal
 from planning.views.detail_views import MAX_PHOTOS, TooManyPhotos
 from planning.views.ground_band import GroundBand
+from planning.views.keep_out import KeepOut, Obstacle, keep_out
 from planning.views.limits import Limit
 from planning.views.proof import flown_camera
 from planning.views.solids import Component, FloatArray
@@ -149,12 +150,27 @@ def test_wires_are_looked_for_above_the_ground() -> None:
     assert corners[..., 2].min() >= 4.0
 
 
-def test_where_a_line_runs_beside_it_photos_are_taken_from_nearer_or_from_above() -> None:
+def test_where_the_least_height_is_great_photos_look_down_from_there() -> None:
     stands = stand("tubular, 110 kV, alternating")
     site = replace(stands.site, keep_out=replace(stands.keep_out, band=GroundBand.level(45.0, MAX_HEIGHT_M)))
     usual, higher = (span_photos(own, flown_camera(FULL_FRAME), 0.01) for own in (stands.site, site))
     assert len(higher.poses) and higher.poses.position[:, 2].min() >= 45.0 > usual.poses.position[:, 2].min()
     assert higher.poses.pitch_deg.mean() < usual.poses.pitch_deg.mean()
+
+
+def test_where_another_line_runs_beside_it_photos_are_taken_from_nearer_or_over_it() -> None:
+    stands = stand("tubular, 110 kV, alternating")
+    beside = Obstacle(np.array([[x, y] for x in (55.0, 75.0) for y in (-AROUND_M, AROUND_M)]), 0.0, 40.0)
+    other = keep_out([beside], [], stands.clearance_m, stands.keep_out.band, AROUND_M)
+    both = KeepOut(
+        np.concatenate([stands.keep_out.bound, other.bound]), np.concatenate([stands.keep_out.top_m, other.top_m]), stands.keep_out.band
+    )
+    plan = spans_plan(replace(stands.site, keep_out=both), ZOOM, GSD_M, ViewSpeeds())
+    free, barred = (plan.poses.only(side * plan.poses.position[:, 0] > 0.0) for side in (-1.0, 1.0))
+    assert set(free.pitch_deg.tolist()) == {-10.0} and barred.pitch_deg.max() < -10.0
+    assert np.abs(barred.position[:, 0]).max() < np.abs(free.position[:, 0]).min()
+    assert plan.coverage.share >= 0.99
+    assert not other.in_column(plan.poses.position).any()
 
 
 def test_a_gimbal_that_does_not_reach_takes_none_and_a_tower_without_spans_has_no_wires() -> None:
