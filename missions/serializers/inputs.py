@@ -70,9 +70,7 @@ class TaskSerializer(KnownFieldsSerializer):
 
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
-    views = ViewsInputSerializer(
-        required=False, allow_null=True, help_text="with photo, of a power tower: photos of it or its wires from planned poses"
-    )
+    views = ViewsInputSerializer(required=False, allow_null=True, help_text="with photo, of a power tower: photos from planned poses")
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if attrs.get("views") and attrs["kind"] != TaskKind.PHOTO:

@@ -7745,7 +7745,7 @@ export interface components {
             kind: components["schemas"]["TaskKind"];
             /** Format: double */
             hold_s?: number;
-            /** @description with photo, of a power tower: photos of it or its wires from planned poses */
+            /** @description with photo, of a power tower: photos from planned poses */
             views?: components["schemas"]["ViewsInputRequest"] | null;
         };
         /**
