@@ -199,6 +199,7 @@ PARTS = ("id", "rawId", "type", "response", "clientExtensionResults")
 INNER = ("clientDataJSON", "authenticatorData", "signature", "userHandle", "attestationObject")
 
 
+@pytest.mark.long
 @settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(part=st.sampled_from([*PARTS, *INNER, ""]), value=JSON)
 def test_damaged_responses_are_refused_and_nothing_fails(ida: User, part: str, value: Any) -> None:

@@ -161,6 +161,7 @@ def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor
     }  # fmt: skip
 
 
+@pytest.mark.long
 def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     uav = writes(page, "POST", "/uavs", {"name": "Plover", "position": YARD, "type": unlimited_type(page)})["id"]
@@ -184,6 +185,7 @@ def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) ->
     assert asks(page, f"/uavs/{uav}")["geometry"]["coordinates"] == pytest.approx(typed, abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_uav_is_retired_with_a_way_back_and_is_not_offered_for_missions(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     uav = writes(page, "POST", "/uavs", {"name": "Dotterel", "position": YARD, "type": unlimited_type(page)})["id"]
@@ -204,6 +206,7 @@ def test_a_uav_is_retired_with_a_way_back_and_is_not_offered_for_missions(visito
     expect(details(page).get_by_role("button", name="Bring back")).to_be_visible()
 
 
+@pytest.mark.long
 def test_a_deleted_base_comes_back_and_one_in_use_stays(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     used = writes(page, "POST", "/bases", {"name": "Used yard", "position": YARD})["id"]
@@ -241,6 +244,7 @@ def test_a_token_is_shown_once_replaced_and_revoked(visitor: Visitor, picture: P
     assert asks(page, f"/uavs/{uav}")["properties"]["credentials"] == []
 
 
+@pytest.mark.long
 def test_two_people_in_one_uav_see_each_others_changes(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     uav = writes(page, "POST", "/uavs", {"name": "Godwit", "position": YARD, "type": unlimited_type(page)})["id"]
@@ -258,6 +262,7 @@ def test_two_people_in_one_uav_see_each_others_changes(visitor: Visitor) -> None
     forgives(visitor, "412")
 
 
+@pytest.mark.long
 def test_what_was_typed_stays_when_the_network_is_gone_and_comes_back_when_it_was_left(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     uav = writes(page, "POST", "/uavs", {"name": "Curlew", "position": YARD, "type": unlimited_type(page)})["id"]
@@ -277,6 +282,7 @@ def test_what_was_typed_stays_when_the_network_is_gone_and_comes_back_when_it_wa
     forgives(visitor, "ERR_INTERNET_DISCONNECTED", "map: ")  # a tile of the map may have been on its way
 
 
+@pytest.mark.long
 def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     unlimited_type(page)

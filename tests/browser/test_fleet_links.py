@@ -41,6 +41,7 @@ def reports(site: Site, token: str, **record: Any) -> None:
         assert json.load(answer)["stored"] == 1
 
 
+@pytest.mark.long
 def test_a_uav_that_is_heard_over_http_says_so_in_its_panel(site: Site, visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     uav = writes(page, "POST", "/uavs", {"name": "Sandpiper", "position": YARD, "type": unlimited_type(page), "link": "http"})["id"]

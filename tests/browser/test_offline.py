@@ -43,6 +43,7 @@ def test_work_goes_on_without_a_network_and_is_saved_when_it_is_back(visitor: Vi
     forgives_the_cut(visitor)
 
 
+@pytest.mark.long
 def test_a_page_that_dies_without_a_network_finds_its_changes_again(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     address = stores_mission(page, "Battery empty")
@@ -63,6 +64,7 @@ def test_a_page_that_dies_without_a_network_finds_its_changes_again(visitor: Vis
     assert len(asks(again, address)["targets"]) == 1
 
 
+@pytest.mark.long
 def test_a_save_whose_answer_is_lost_makes_one_mission(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
     picks_from_the_search(page, f"{region.voltage_kv} kV")

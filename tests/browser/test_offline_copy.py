@@ -122,6 +122,7 @@ def test_after_one_visit_an_approved_mission_opens_without_a_network(visitor: Vi
     expect(page.locator(".copy-banner")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_a_page_that_was_not_kept_names_the_copies_that_are_there(visitor: Visitor, mission: str) -> None:
     context = with_a_worker(visitor)
     page = signed_in(visitor, context)
@@ -152,6 +153,7 @@ def test_after_signing_out_nothing_opens_without_a_network(visitor: Visitor, mis
     expect(page.get_by_text(NAME)).to_have_count(0)
 
 
+@pytest.mark.long
 def test_signing_out_without_a_network_empties_the_copy(visitor: Visitor, mission: str) -> None:
     context = with_a_worker(visitor)
     page = signed_in(visitor, context)
@@ -165,6 +167,7 @@ def test_signing_out_without_a_network_empties_the_copy(visitor: Visitor, missio
     assert page.evaluate(KEPT_OF_USERS) == []
 
 
+@pytest.mark.long
 def test_another_user_of_the_browser_gets_nothing_of_the_copy(visitor: Visitor, mission: str) -> None:
     context = with_a_worker(visitor)
     page = signed_in(visitor, context)
@@ -177,6 +180,7 @@ def test_another_user_of_the_browser_gets_nothing_of_the_copy(visitor: Visitor, 
     waits_until(page, f"async () => (await ({KEPT_OF_USERS})()).length === 0")
 
 
+@pytest.mark.long
 def test_a_line_that_stands_still_ends_in_the_copy_and_not_in_waiting(visitor: Visitor, mission: str) -> None:
     context = with_a_worker(visitor)
     page = signed_in(visitor, context)
@@ -194,6 +198,7 @@ def test_a_line_that_stands_still_ends_in_the_copy_and_not_in_waiting(visitor: V
         page.close()
 
 
+@pytest.mark.long
 def test_what_is_not_approved_any_more_is_not_kept_after_the_next_page(visitor: Visitor, mission: str) -> None:
     context = with_a_worker(visitor)
     page = signed_in(visitor, context)

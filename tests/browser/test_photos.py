@@ -79,6 +79,7 @@ def test_photos_are_sent_reviewed_by_keys_and_found_on_their_asset(visitor: Visi
     visitor.complaints[:] = [words for words in visitor.complaints if "422" not in words]  # the file that is no photo
 
 
+@pytest.mark.long
 def test_a_viewer_on_a_phone_sees_photos_and_can_change_nothing(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.signs_in("opal")
     mission = stores_mission(page, "Photos for a viewer")

@@ -79,6 +79,7 @@ def test_the_graph_shows_the_assets(line):
     assert set(graph.edge_asset.tolist()) == {line.pk}
 
 
+@pytest.mark.long
 def test_assets_that_vanished_or_cannot_be_flown_are_left_out(line):
     Asset.objects.filter(osm_id=3).update(vanished_at=timezone.now())
     Asset.objects.filter(pk=line.pk).update(is_flyable=False)

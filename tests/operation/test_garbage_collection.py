@@ -30,6 +30,7 @@ print(gc.get_freeze_count() >= 800_000, sum(answer() is not None for answer in m
 """
 
 
+@pytest.mark.long
 def test_what_grew_old_while_it_was_used_is_found_once_it_is_garbage():
     reported = subprocess.run([sys.executable, "-c", ANSWERS], capture_output=True, text=True, check=True, timeout=60)
 

@@ -132,6 +132,7 @@ def test_a_tower_that_is_too_tall_to_be_flown_over():
     assert reachabilities(found)[2] == Reachability.ABOVE_HEIGHT_LIMIT
 
 
+@pytest.mark.long
 def test_a_line_that_stands_alone_is_reached_over_a_leg_of_its_own_or_not_at_all():
     """A second line 8 km north of the first is reached over a leg from it; one 20 km north is cut off."""
     near, far = row(2, lat=0.072), row(2, lat=0.18)

@@ -64,6 +64,7 @@ def test_a_skip_of_the_list_passes_and_tests_are_counted_by_kind(workers: int, t
     assert summary(reports) == [total, "  1000.0  one", "    7.0  three", "    0.2  two"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("workers", [0, 2])
 def test_an_empty_parameter_set_fails_the_run(workers: int, tmp_path: Path) -> None:
     code, output, _ = _run(tmp_path, RUNS, EMPTY, workers=workers)
@@ -75,6 +76,7 @@ def test_the_projects_own_tests_fail_on_an_empty_parameter_set(pytestconfig: pyt
     assert pytestconfig.getini("empty_parameter_set_mark") == "fail_at_collect"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("module", "workers"), [(SKIPS.format(reason="real data not here: a.pbf"), 2), ("", 0)], ids=["all skipped", "none there"]
 )

@@ -58,6 +58,7 @@ def mission_called(name: str) -> Mission:
     return Mission.objects.get(name=name)
 
 
+@pytest.mark.long
 def test_its_worker_is_free_while_simulated_uavs_get_ready_and_fly(job: Job) -> None:
     work_until(job, Simulation.objects.exists)
     assert mission_called(REAL_TIME).state == MissionState.APPROVED
@@ -106,6 +107,7 @@ def test_a_simulation_that_is_ended_by_hand_is_not_begun_again(job: Job, adminis
     assert Simulation.objects.filter(mission__name=REAL_TIME).count() == 1
 
 
+@pytest.mark.long
 def test_a_command_that_fails_ends_the_job_with_the_reason(job: Job) -> None:
     planned_all(job)
     stand_ready()

@@ -69,12 +69,14 @@ def test_each_passes_its_own_rehearsal(administrator: User) -> None:
         assert faults_of(found) == []
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("planned_only")
 def test_made_again_they_are_as_they_were(administrator: User) -> None:
     assert len(make(administrator)) == len(DEMO_MISSIONS)
     assert make(administrator) == []
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("planned_only")
 def test_removed_they_take_uavs_types_and_bases_along_but_not_what_other_missions_have(administrator: User) -> None:
     missions = make(administrator)

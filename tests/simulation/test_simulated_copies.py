@@ -113,6 +113,7 @@ def test_a_copy_has_the_same_routes_and_twins_of_the_uavs_and_the_mission_stays_
     assert client.get(f"/api/v1/missions/{copy.pk}").json()["simulates"] == str(real.pk)
 
 
+@pytest.mark.long
 def test_asked_again_the_same_copy_is_flown_and_twins_are_used_again(client, person, real):
     copy = flies_copy(client, real)
     assert flies_copy(client, real) == copy
@@ -166,6 +167,7 @@ def test_a_twin_flies_in_copies_alone(client, person, real):
         assert "simulated_twin" in [reason.code for reason in refused.value.reasons]
 
 
+@pytest.mark.long
 def test_a_copy_ends_with_its_simulation(client, person, real):
     copy = flies_copy(client, real)
     dispatch_mission(mission=copy, actor=person)
@@ -178,6 +180,7 @@ def test_a_copy_ends_with_its_simulation(client, person, real):
     assert real.state == MissionState.APPROVED
 
 
+@pytest.mark.long
 def test_a_copy_that_was_not_sent_is_flown_again_by_twins_that_come_back(client, person, real):
     copy = flies_copy(client, real)
     end_now(Simulation.objects.get(), "ended-by-hand")
@@ -186,6 +189,7 @@ def test_a_copy_that_was_not_sent_is_flown_again_by_twins_that_come_back(client,
     assert set(Uav.objects.filter(twin_of__isnull=False).values_list("state", flat=True)) == {UavState.ACTIVE}
 
 
+@pytest.mark.long
 def test_a_copy_is_in_nobodys_way(client, person, real):
     departs_at = timezone.now()
     copy = flies_copy(client, real)

@@ -76,6 +76,7 @@ def test_a_log_of_the_flight_that_is_read_again_adds_nothing(uav):
     assert Capture.objects.count() == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(8))
 def test_order_and_repetition_change_nothing(uav, seed):
     """30 photos, some with three messages and some with one; delivered in two orders, in batches, parts of them again."""

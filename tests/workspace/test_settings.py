@@ -53,12 +53,14 @@ def _application_name(environment: dict[str, str]) -> str:
     return subprocess.check_output([sys.executable, "-c", line], cwd=settings.BASE_DIR, env=environment, text=True).strip()  # noqa: S603
 
 
+@pytest.mark.long
 def test_the_database_is_told_which_program_holds_a_connection() -> None:
     url = "postgis://somebody@localhost/spanwise"
     assert _application_name({"SPANWISE_PROGRAM": "gateway", "DATABASE_URL": url}) == "gateway"
     assert _application_name({"SPANWISE_PROGRAM": "gateway", "DATABASE_URL": f"{url}?application_name=north"}) == "north"
 
 
+@pytest.mark.long
 def test_over_https_cookies_are_bound_to_the_host() -> None:
     """Browsers take a __Host- cookie from the host itself alone, over TLS, for the whole site."""
     names = ("SESSION_COOKIE_NAME", "CSRF_COOKIE_NAME", "SESSION_COOKIE_SECURE", "SESSION_COOKIE_DOMAIN")

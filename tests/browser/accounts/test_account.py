@@ -52,6 +52,7 @@ def test_preferences_are_kept_at_once_and_hold_in_another_browser(visitor: Visit
     expect(elsewhere.get_by_label("First name")).to_have_value("Pia")
 
 
+@pytest.mark.long
 def test_the_theme_button_of_the_bar_keeps_the_theme_in_the_account(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "theo"))
     for theme in ("light", "dark"):
@@ -62,6 +63,7 @@ def test_the_theme_button_of_the_bar_keeps_the_theme_in_the_account(visitor: Vis
     expect(account(visitor.signs_in("theo")).locator("html")).to_have_attribute("data-theme", "dark")
 
 
+@pytest.mark.long
 def test_a_chosen_language_is_there_at_once(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "lena"))
     page.get_by_label("Language").select_option("de")
@@ -71,6 +73,7 @@ def test_a_chosen_language_is_there_at_once(visitor: Visitor) -> None:
     expect(page.locator("html[lang^='en'][data-loaded]")).to_be_attached()
 
 
+@pytest.mark.long
 def test_single_keys_can_be_switched_off(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "kira"))
     page.get_by_role("switch", name="Single-key shortcuts").uncheck()
@@ -148,6 +151,7 @@ Job.objects.create(**own | {"created_by": User.objects.get(username="ada"), "tas
 """
 
 
+@pytest.mark.long
 def test_ones_own_jobs_are_listed_and_one_that_waits_is_cancelled(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "jana"))
     jobs = page.get_by_role("list", name="Jobs")
@@ -174,6 +178,7 @@ def test_whoever_may_not_cancel_a_job_is_not_offered_it(visitor: Visitor) -> Non
     expect(jobs.get_by_role("button")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_signing_out_everywhere_else_leaves_this_browser(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "sven"))
     elsewhere = visitor.signs_in("sven")

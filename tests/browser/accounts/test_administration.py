@@ -78,6 +78,7 @@ def test_an_invitation_makes_an_account_once(visitor: Visitor) -> None:
     visitor.complaints[:] = [words for words in visitor.complaints if "410" not in words]  # the answer that was wanted
 
 
+@pytest.mark.long
 def test_the_link_keeps_the_focus_however_late_the_dialog_says_that_it_is_closed(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"))
     page.evaluate(REPORT_LATE)
@@ -87,6 +88,7 @@ def test_the_link_keeps_the_focus_however_late_the_dialog_says_that_it_is_closed
     expect(page.get_by_role("dialog")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_an_invitation_that_was_taken_back_lets_nobody_in(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"))
     link = invites(page, "Administrator")
@@ -153,6 +155,7 @@ def test_of_two_administrators_the_later_one_is_told(visitor: Visitor) -> None:
     visitor.complaints[:] = [words for words in visitor.complaints if "412" not in words]  # the refusal that was wanted
 
 
+@pytest.mark.long
 def test_name_and_address_are_changed_in_a_dialog_and_faults_stand_there(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"))
     comes_in(visitor, invites(page, "Viewer"), "nils")
@@ -169,6 +172,7 @@ def test_name_and_address_are_changed_in_a_dialog_and_faults_stand_there(visitor
     visitor.complaints[:] = [words for words in visitor.complaints if "400" not in words]
 
 
+@pytest.mark.long
 def test_a_program_works_with_a_service_account_until_it_is_disabled(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"), "service-accounts")
     page.get_by_role("button", name="Add a service account").click()
@@ -193,6 +197,7 @@ def test_a_program_works_with_a_service_account_until_it_is_disabled(visitor: Vi
     assert program.request.get("/api/v1/missions").status == 401
 
 
+@pytest.mark.long
 def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
     endpoint = visitor.opens()
     endpoint.get_by_label("User name").fill("nobody-at-all")
@@ -228,6 +233,7 @@ def test_only_administrators_find_the_administration(visitor: Visitor) -> None:
     visitor.complaints[:] = [words for words in visitor.complaints if "403" not in words]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("view", VIEWS if HAS_PICTURES else ["phone-dark", *long("light")])
 def test_axe_finds_nothing_serious_on_any_tab_or_behind_a_link(visitor: Visitor, picture: Callable[[Page, str], None], view: str) -> None:
     page = visitor.signs_in("ada", **VIEWS[view])

@@ -74,6 +74,7 @@ def test_a_passkey_is_added_signs_in_confirms_and_is_removed(visitor: Visitor, p
     expect(page.get_by_text("None yet.")).to_be_visible()
 
 
+@pytest.mark.long
 def test_an_address_without_a_host_name_says_why_there_are_no_passkeys(visitor: Visitor) -> None:
     page = account(visitor.signs_in("ada"))
     expect(page.get_by_text("This browser or this address cannot make passkeys")).to_be_visible()

@@ -30,6 +30,7 @@ def test_wrong_password_is_refused_with_the_tries_left_and_the_right_one_opens_t
     expect(page).to_have_url(re.compile(rf"^{visitor.site.address}/missions/new(#|$)"))  # where the visitor was going
 
 
+@pytest.mark.long
 def test_sign_in_follows_the_dark_theme_of_the_system(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.opens(theme="dark")
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(26, 32, 35)"
@@ -48,6 +49,7 @@ def test_a_viewer_sees_the_map_but_cannot_plan(visitor: Visitor) -> None:
     assert refused.status == 403
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
 def test_a_viewer_has_nothing_to_edit_with(visitor: Visitor, size: tuple[int, int]) -> None:
     address = stores_mission(visitor.signs_in("opal"), "For viewers")

@@ -84,6 +84,7 @@ def test_a_second_factor_is_set_up_asked_for_and_replaced_by_a_recovery_code(vis
     expect(other.get_by_role("heading", name="Sign in")).to_be_visible()
 
 
+@pytest.mark.long
 def test_a_word_stands_on_the_page_before_the_session_ends(visitor: Visitor, picture: Picture) -> None:
     page = account(newcomer(visitor, "walter"))
     page.evaluate('import("/static/js/page/session_end.js").then(({ watchSessionEnd }) => watchSessionEnd(240))')

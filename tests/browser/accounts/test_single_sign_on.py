@@ -58,6 +58,7 @@ def test_one_signs_in_at_the_provider_and_confirms_there(visitor: Visitor, provi
     expect(page.locator("#new-token code")).to_contain_text("spw_")
 
 
+@pytest.mark.long
 def test_a_refusal_says_what_to_do(visitor: Visitor, provider: OpenIdProvider, picture: Picture) -> None:
     provider.claims = {"sub": "gustav", "groups": ["visitors"]}
     page = visitor.opens("/sign-in")

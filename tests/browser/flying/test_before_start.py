@@ -104,6 +104,7 @@ def test_four_clicks_lead_from_approved_to_the_start_of_all(visitor: Visitor, ap
     expect(page.locator("#planned-starts")).to_contain_text("No further UAV is started")
 
 
+@pytest.mark.long
 def test_a_uav_in_another_place_is_left_with_its_reason(visitor: Visitor, approved: Approved) -> None:
     mission, standing = approved
     page: Page = visitor.signs_in("opal")
@@ -123,6 +124,7 @@ def test_a_uav_in_another_place_is_left_with_its_reason(visitor: Visitor, approv
     expect(panel.get_by_role("button", name="Start 2 UAVs")).to_be_disabled()
 
 
+@pytest.mark.long
 def test_one_that_is_not_connected_is_left_and_named_and_the_others_start(visitor: Visitor, approved: Approved, picture: Picture) -> None:
     mission, standing = approved
     page: Page = visitor.signs_in("opal")

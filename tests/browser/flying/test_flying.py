@@ -127,6 +127,7 @@ def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission
     expect(history.get_by_role("listitem").first).to_contain_text("Storm is coming")
 
 
+@pytest.mark.long
 def test_a_plan_that_reaches_no_target_cannot_be_approved(visitor: Visitor, mission: str) -> None:
     page = visitor.signs_in("opal")
     uavs = [{"name": uav["name"], "position": uav["position"], "max_range_m": 20.0} for uav in asks(page, mission)["uavs"]]
@@ -158,6 +159,7 @@ def test_what_is_refused_is_said_with_every_reason(visitor: Visitor, mission: st
     visitor.complaints.clear()  # the refusal itself, which the browser writes into its log
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("theme", "size", "name"),
     [("light", (390, 844), "flying-phone"), pytest.param("dark", (1440, 900), "flying-dark", marks=pytest.mark.long)],
@@ -182,6 +184,7 @@ def test_a_mission_on_its_way_fits_every_window(
     expect(page.get_by_role("button", name="Save a copy")).to_be_visible()
 
 
+@pytest.mark.long
 def test_viewers_see_a_mission_on_its_way_and_have_no_buttons(visitor: Visitor, mission: str) -> None:
     operator = visitor.signs_in("opal")
     key = mission.split("/")[-1]

@@ -126,6 +126,7 @@ def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: st
         assert download.value.suggested_filename.endswith(f"-results.{ending}")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("view", [*VIEWS] if HAS_PICTURES else ["phone-light", *long("dark")])
 def test_the_record_fits_every_window(visitor: Visitor, flown: str, picture: Picture, view: str) -> None:
     page = opened(visitor.signs_in("vera", **VIEWS[view]), flown)
@@ -147,6 +148,7 @@ def test_a_mission_that_nobody_has_flown_says_so(visitor: Visitor, picture: Pict
     picture(page, "report-empty-light")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("start", ["fly", *long("report")])
 def test_a_mission_with_open_targets_is_closed_and_followed_up(visitor: Visitor, site: Site, picture: Picture, start: str) -> None:
     """After an abort: each open target gets a reason, and the draft of the rest is there at once."""

@@ -73,6 +73,7 @@ def test_an_issue_is_found_shown_mended_and_the_repair_taken_back(visitor: Visit
     assert open_number(page) == before
 
 
+@pytest.mark.long
 def test_keys_go_along_the_list_and_to_the_place(visitor: Visitor) -> None:
     page = opens_issues(visitor, "cora")
     names = rows(page)
@@ -87,6 +88,7 @@ def test_keys_go_along_the_list_and_to_the_place(visitor: Visitor) -> None:
     expect(page.locator("#dock")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_an_issue_that_is_right_is_left_with_a_note_and_opened_again(visitor: Visitor) -> None:
     page = opens_issues(visitor, "cora", kind="Bridges without a way", keeps_searching=True)
     page.locator(".issue-row").first.click()
@@ -103,6 +105,7 @@ def test_an_issue_that_is_right_is_left_with_a_note_and_opened_again(visitor: Vi
     expect(page.locator("#issue-list-end")).to_contain_text("No issue like that here.")
 
 
+@pytest.mark.long
 def test_filters_narrow_the_list_and_an_empty_one_says_so(visitor: Visitor) -> None:
     page = opens_issues(visitor, "cora")
     whole = len(rows(page))
@@ -115,6 +118,7 @@ def test_filters_narrow_the_list_and_an_empty_one_says_so(visitor: Visitor) -> N
     expect(page.locator(".issue-row")).not_to_have_count(whole)
 
 
+@pytest.mark.long
 def test_who_is_no_curator_sees_gaps_and_cannot_mend_them(visitor: Visitor) -> None:
     page = opens_issues(visitor, "opal")
     page.locator(".issue-row").first.click()

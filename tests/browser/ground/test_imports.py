@@ -160,6 +160,7 @@ def test_a_cut_connection_goes_on_where_it_was_also_after_a_reload(visitor: Visi
     page.get_by_role("button", name="Discard").click()
 
 
+@pytest.mark.long
 def test_a_connection_that_comes_back_is_used_without_a_word_from_anybody(visitor: Visitor, curator: Page, tmp_path: Path) -> None:
     page = curator
     path = written(tmp_path, "again.geojson", zone_file(("Again", *region.at(0, 0.03)), padding="x" * PART))
@@ -213,6 +214,7 @@ def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, tmp_
     visitor.complaints[:] = [complaint for complaint in visitor.complaints if "409" not in complaint]
 
 
+@pytest.mark.long
 def test_the_keyboard_is_enough_to_decide(curator: Page, tmp_path: Path) -> None:
     page = curator
     page.locator("#choose-file").set_input_files(written(tmp_path, "works.geojson", zone_file(NORTH, EAST)))
@@ -228,6 +230,7 @@ def test_the_keyboard_is_enough_to_decide(curator: Page, tmp_path: Path) -> None
     expect(page.get_by_text("is discarded.")).to_be_visible()
 
 
+@pytest.mark.long
 def test_what_was_edited_by_hand_is_kept_or_overwritten_with_a_word(curator: Page, tmp_path: Path) -> None:
     page = curator
     sends(page, written(tmp_path, "works.geojson", zone_file(NORTH)), set_name="Works")
@@ -252,6 +255,7 @@ def test_what_was_edited_by_hand_is_kept_or_overwritten_with_a_word(curator: Pag
     assert asks(page, f"/zones/{zone['id']}")["properties"]["reason"] == ""
 
 
+@pytest.mark.long
 def test_the_columns_of_a_table_are_explained_before_it_is_compared(
     curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]
 ) -> None:
@@ -280,6 +284,7 @@ def test_the_columns_of_a_table_are_explained_before_it_is_compared(
     page.get_by_role("button", name="Discard").click()
 
 
+@pytest.mark.long
 def test_a_file_on_its_way_says_how_far_it_is_and_what_is_read_can_be_stopped(
     curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]
 ) -> None:
@@ -302,6 +307,7 @@ def test_a_file_on_its_way_says_how_far_it_is_and_what_is_read_can_be_stopped(
     expect(page.locator("#proposal .chip")).to_have_text("Discarded")
 
 
+@pytest.mark.long
 def test_an_area_that_is_too_large_is_not_asked_of_overpass(curator: Page) -> None:
     page = curator
     look_at(page, region.centre, 11)
@@ -319,6 +325,7 @@ def test_an_area_that_is_too_large_is_not_asked_of_overpass(curator: Page) -> No
     assert "POST" not in asked
 
 
+@pytest.mark.long
 def test_only_curators_have_the_tools_the_others_a_sentence(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     opens_imports(page)

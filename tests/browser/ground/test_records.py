@@ -67,6 +67,7 @@ def test_a_fact_is_corrected_told_in_the_history_and_brought_back(visitor: Visit
     expect(page.get_by_label("Find", exact=True)).to_be_visible()
 
 
+@pytest.mark.long
 def test_the_register_filters_sorts_marks_edits_and_takes_back(visitor: Visitor, picture: Picture) -> None:
     page = opens(visitor, "/assets")
     total = asks(page, "/assets/summary")["total"]
@@ -98,12 +99,14 @@ def test_the_register_filters_sorts_marks_edits_and_takes_back(visitor: Visitor,
     assert loaded.value.suggested_filename == "assets.gpkg"
 
 
+@pytest.mark.long
 def test_a_phone_has_the_list_instead_of_the_table(visitor: Visitor) -> None:
     page = opens(visitor, "/assets", size=PHONE)
     expect(page.locator("button.record-row").first).to_be_visible()
     expect(page.locator(".register")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_zones_are_a_register_too(visitor: Visitor, picture: Picture) -> None:
     page = opens(visitor, "/zones")
     counts = asks(page, "/zones/summary")
@@ -167,6 +170,7 @@ def test_what_is_stored_over_a_change_of_others_leaves_their_other_facts(visitor
     visitor.complaints.clear()  # the browser tells of the answer 412, which is meant
 
 
+@pytest.mark.long
 def test_a_new_line_takes_the_exact_places_of_what_it_snaps_to_unless_ctrl_is_held(visitor: Visitor) -> None:
     page = opens(visitor, "/assets")
     tower = find_pickable(page).tower
@@ -187,6 +191,7 @@ def test_a_new_line_takes_the_exact_places_of_what_it_snaps_to_unless_ctrl_is_he
     page.get_by_role("button", name="Cancel").click()
 
 
+@pytest.mark.long
 def test_a_shape_is_drawn_and_corrected_without_a_pointer(visitor: Visitor) -> None:
     page = opens(visitor, "/zones")
     page.get_by_role("button", name="New zone").click()
@@ -213,6 +218,7 @@ def test_a_shape_is_drawn_and_corrected_without_a_pointer(visitor: Visitor) -> N
     page.get_by_role("button", name="Delete").click()
 
 
+@pytest.mark.long
 def test_a_point_is_dragged_the_whole_is_moved_and_a_dropped_edit_comes_back(visitor: Visitor) -> None:
     page = opens(visitor, "/zones")
     zone = asks(page, "/zones?limit=1")["features"][0]
@@ -296,6 +302,7 @@ def test_a_border_that_crosses_itself_cannot_be_saved(visitor: Visitor) -> None:
     page.get_by_role("button", name="Cancel").click()
 
 
+@pytest.mark.long
 def test_an_edit_outlives_the_page(visitor: Visitor) -> None:
     page = opens(visitor, "/zones")
     page.get_by_role("button", name="New zone").click()
@@ -310,6 +317,7 @@ def test_an_edit_outlives_the_page(visitor: Visitor) -> None:
     page.get_by_role("button", name="Cancel").click()
 
 
+@pytest.mark.long
 def test_operators_look_and_change_nothing(visitor: Visitor, picture: Picture) -> None:
     page = opens(visitor, "/zones", "opal", theme="dark")
     expect(page.get_by_role("button", name="New zone")).to_be_hidden()

@@ -132,6 +132,7 @@ def a_line_of(page: Page) -> tuple[dict[str, Any], list[float]]:
     raise AssertionError("no line")
 
 
+@pytest.mark.long
 def test_without_terrain_the_page_says_so_and_leads_to_imports(visitor: Visitor, no_model: None) -> None:
     page = opens_terrain(visitor, "cora")
     expect(page.locator("#terrain-list-end")).to_contain_text("No terrain here yet.")
@@ -151,6 +152,7 @@ def test_a_model_is_told_with_its_datum_voids_and_licence(visitor: Visitor, mode
     expect(page.get_by_role("button", name=f"Remove {NAME}")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_a_click_tells_the_height_of_the_ground_there(visitor: Visitor, model: None) -> None:
     page = opens_terrain(visitor, "vera")
     position = region.at(0.01, 0.001)
@@ -161,6 +163,7 @@ def test_a_click_tells_the_height_of_the_ground_there(visitor: Visitor, model: N
     expect(page.locator("#dock")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_points_make_a_profile_and_the_last_can_be_taken_back(visitor: Visitor, model: None) -> None:
     page = opens_terrain(visitor, "vera")
     page.keyboard.press("p")
@@ -194,6 +197,7 @@ def test_a_power_line_stands_in_its_profile_with_its_towers_and_one_cursor(visit
     assert page.locator(".profile-table tbody tr").count() > 10
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("theme", "width", "height", "name"), [("light", 1440, 900, "light"), ("dark", 1440, 900, "dark"), ("light", 390, 844, "phone")]
 )
@@ -210,6 +214,7 @@ def test_the_profile_stands_in_sight(
     picture(page, f"terrain-{name}")
 
 
+@pytest.mark.long
 def test_a_curator_takes_a_model_away_after_being_asked(visitor: Visitor, model: None) -> None:
     page = opens_terrain(visitor, "cora")
     page.get_by_role("button", name=f"Remove {NAME}").click()

@@ -84,6 +84,7 @@ def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_wha
     assert mission_of(page)["departs_at"] is None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("how", [PHONE, *long({})], ids=["phone", "desk"])
 def test_the_bar_of_legal_times_takes_a_departure_from_keys_and_from_a_click(
     visitor: Visitor, picture: Picture, how: dict[str, Any]
@@ -182,6 +183,7 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     assert mission_of(page)["plan"]["routes"][1]["waypoints"] == planned
 
 
+@pytest.mark.long
 def test_what_can_be_inspected_is_a_layer_with_counts_and_the_reason_of_each_asset(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Within reach", targets=2)

@@ -62,6 +62,7 @@ def test_the_network_and_the_zones_are_drawn(visitor: Visitor, theme: str) -> No
     assert with_zone != empty
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(390, 844), *long((1440, 900))])
 def test_a_mission_opens_at_its_routes_whatever_far_view_its_address_names(visitor: Visitor, size: tuple[int, int]) -> None:
     page = visitor.signs_in("opal", size=size, touch=size[0] < 721)
@@ -80,6 +81,7 @@ def test_a_mission_opens_at_its_routes_whatever_far_view_its_address_names(visit
         page.goto("about:blank")
 
 
+@pytest.mark.long
 def test_a_view_of_the_ground_in_the_address_is_kept_and_moving_adds_nothing_to_the_history(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     longitude, latitude = region.centre
@@ -106,6 +108,7 @@ def test_routes_say_how_they_end_and_the_switch_what_happens_without_it(visitor:
     expect(page.get_by_role("list", name="Routes")).to_contain_text(re.compile(r"ends hovering at [AB]\d"))
 
 
+@pytest.mark.long
 def test_a_base_map_that_cannot_be_reached_is_said_once_and_asked_for_no_more(visitor: Visitor) -> None:
     page = visitor.signs_in("opal", draws=True)
     asked: list[str] = []

@@ -115,6 +115,7 @@ def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(opera
     expect(menu).to_have_count(0)
 
 
+@pytest.mark.long
 def test_distances_are_measured_with_the_mouse_and_nothing_is_picked_meanwhile(operator: Page) -> None:
     place = look_at(operator, region.empty, 14)
     operator.get_by_role("button", name="Measure").click()
@@ -154,6 +155,7 @@ def test_distances_are_measured_with_the_keyboard_alone(operator: Page) -> None:
     expect(banner).to_be_hidden()
 
 
+@pytest.mark.long
 def test_the_coordinates_of_a_place_are_copied_latitude_first(operator: Page) -> None:
     operator.context.grant_permissions(["clipboard-read", "clipboard-write"])
     place = look_at(operator, region.empty, 14)
@@ -164,6 +166,7 @@ def test_the_coordinates_of_a_place_are_copied_latitude_first(operator: Page) ->
     expect(operator.get_by_text(re.compile(f"^Copied: {str(region.empty[1])[:4]}"))).to_be_visible()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("words", ["39.9612, -82.9988", "39°57'40.3\"N 82°59'55.7\"W"])
 def test_coordinates_in_the_search_box_are_gone_to(operator: Page, words: str) -> None:
     find = operator.get_by_role("combobox", name="Find an asset or a line")
@@ -173,6 +176,7 @@ def test_coordinates_in_the_search_box_are_gone_to(operator: Page, words: str) -
     expect(operator).to_have_url(re.compile(r"#map=[\d.]+/39\.961\d*/-82\.998\d*$"))
 
 
+@pytest.mark.long
 def test_a_zone_is_found_by_name_and_gone_to(operator: Page) -> None:
     operator.get_by_role("combobox", name="Find an asset or a line").fill("Meadow")
     operator.get_by_role("listbox").get_by_role("option", name=HELIPORT).click()
@@ -197,6 +201,7 @@ def test_tiles_that_cannot_be_read_are_told_and_asked_for_again(visitor: Visitor
     visitor.complaints.clear()
 
 
+@pytest.mark.long
 def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
     page = visitor.signs_in("opal", size=(390, 844), touch=True)
     page.goto("/missions/new")
@@ -206,6 +211,7 @@ def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
     expect(page.get_by_role("tooltip")).to_contain_text(HELIPORT)
 
 
+@pytest.mark.long
 def test_a_uav_points_along_its_heading_and_nowhere_without_one(operator: Page) -> None:
     token = next(cookie["value"] for cookie in operator.context.cookies() if cookie["name"] == "csrftoken")
     of, east = unlimited_type(operator), [region.empty[0] + 0.05, region.empty[1]]

@@ -64,6 +64,7 @@ def row_address(page: Page, name: str) -> str:
     return row(page, name).get_by_role("link", name=name).get_attribute("href") or ""
 
 
+@pytest.mark.long
 def test_filters_by_author_state_and_changed_ground_leave_what_they_say(visitor: Visitor) -> None:
     stores_mission(visitor.signs_in("rory"), "Made by Rory")
     page = visitor.signs_in("opal")
@@ -84,6 +85,7 @@ def test_filters_by_author_state_and_changed_ground_leave_what_they_say(visitor:
     expect(page.get_by_text("No mission is like that")).to_be_visible()
 
 
+@pytest.mark.long
 def test_a_mission_is_renamed_in_its_place_and_the_name_taken_back(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     stores_mission(page, "Wrong name")
@@ -104,6 +106,7 @@ def test_a_mission_is_renamed_in_its_place_and_the_name_taken_back(visitor: Visi
     expect(row(page, "Wrong name")).to_be_visible()
 
 
+@pytest.mark.long
 def test_a_mission_is_duplicated_with_its_plan(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     stores_mission(page, "Twice")
@@ -139,6 +142,7 @@ def test_several_missions_are_deleted_at_once_and_brought_back(visitor: Visitor)
     expect(row(page, "Batch 1")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_the_list_pages_forth_and_back(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     address = stores_mission(page, "Many of it")
@@ -155,6 +159,7 @@ def test_the_list_pages_forth_and_back(visitor: Visitor) -> None:
     expect(page.locator("#rows .name a").first).to_have_text("Page 00")
 
 
+@pytest.mark.long
 def test_a_phone_scrolls_through_the_states_and_the_page_stays_as_wide_as_the_window(visitor: Visitor) -> None:
     page = visitor.signs_in("opal", size=(390, 844), touch=True)
 
@@ -178,6 +183,7 @@ def test_viewers_open_missions_and_change_none(visitor: Visitor) -> None:
     expect(page.get_by_role("button", name="Delete")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_the_tour_is_walked_by_keyboard_ended_by_escape_and_remembered(visitor: Visitor) -> None:
     page = opens_list(visitor.signs_in("opal"), "/?tour")
     for title in ("Missions", "Plan", "Live", "Assets and zones"):

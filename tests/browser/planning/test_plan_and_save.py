@@ -172,6 +172,7 @@ def test_what_is_picked_can_be_undone_and_survives_a_reload(visitor: Visitor) ->
     expect(page.get_by_text("Nothing picked yet", exact=True)).to_be_visible()
 
 
+@pytest.mark.long
 def test_shift_drag_takes_the_towers_in_a_box(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     page.goto("/missions/new")
@@ -189,6 +190,7 @@ def test_shift_drag_takes_the_towers_in_a_box(visitor: Visitor) -> None:
     assert page.locator("#target-list .target").count() >= 1
 
 
+@pytest.mark.long
 def test_keys_are_shown_and_fold_the_panels(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     page.goto("/missions/new")

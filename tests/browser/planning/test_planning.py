@@ -39,6 +39,7 @@ def objective(page: Page, name: str) -> Any:
     return page.get_by_role("radio", name=name)
 
 
+@pytest.mark.long
 def test_both_ways_of_planning_stand_side_by_side_and_one_click_switches(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Two ways", more=[{"position": region.far_away}])
@@ -61,6 +62,7 @@ def test_both_ways_of_planning_stand_side_by_side_and_one_click_switches(visitor
     expect(facts).to_contain_text(figures["even"])
 
 
+@pytest.mark.long
 def test_a_strip_the_profile_and_the_map_follow_one_pointer(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "From the side")
@@ -112,6 +114,7 @@ def test_a_target_that_is_not_reached_says_why_and_what_would_help(visitor: Visi
     expect(why).to_be_hidden()
 
 
+@pytest.mark.long
 def test_a_route_says_where_its_kilometres_come_from(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Why this way")
@@ -133,6 +136,7 @@ def test_a_route_says_where_its_kilometres_come_from(visitor: Visitor) -> None:
     expect(opener).to_be_focused()
 
 
+@pytest.mark.long
 def test_a_plan_is_set_against_the_last_one(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Against the last")
@@ -156,6 +160,7 @@ def test_a_plan_is_set_against_the_last_one(visitor: Visitor, picture: Callable[
     expect(page.locator(".strip.pale")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_a_uav_that_is_dragged_starts_elsewhere(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Another start")
@@ -189,6 +194,7 @@ def test_a_long_plan_that_is_stopped_keeps_the_best_until_then(visitor: Visitor)
     expect(page.locator("#plan-facts")).to_contain_text("40 targets")
 
 
+@pytest.mark.long
 def test_a_fleet_is_narrowed_by_sensor_and_base_and_several_are_chosen_at_once(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     kinds = {

@@ -79,6 +79,7 @@ def draws_a_pill_by_finger(page: Page, number: str, uav: str, *, to: str, at_x: 
     touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
+@pytest.mark.long
 def test_a_pill_dragged_to_another_uav_is_locked_there_and_says_what_that_costs(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "By hand")
@@ -212,6 +213,7 @@ def test_a_large_plan_is_seen_while_it_is_made_comes_back_after_a_reload_and_can
     expect(page.locator("#plan-facts")).to_contain_text("60 targets")
 
 
+@pytest.mark.long
 def test_a_plan_of_what_was_picked_before_says_so_and_still_does_once_the_change_is_saved(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Changed on the way", targets=40)

@@ -116,6 +116,7 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
     picture(page, "rehearsal-limits")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("view", [*VIEWS] if HAS_PICTURES else ["phone-light", *long("dark")])
 def test_the_verdict_fits_every_window(visitor: Visitor, rehearsed: str, picture: Picture, view: str) -> None:
     page = opened(visitor.signs_in("vera", **VIEWS[view]), rehearsed)
@@ -201,6 +202,7 @@ def test_a_failed_rehearsal_stands_first_in_the_briefing_and_wants_a_reason_that
     writes(page, "POST", f"/missions/{rehearsed}/revoke", {"reason": "Other tests plan it"})
 
 
+@pytest.mark.long
 def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, rehearsed: str) -> None:
     page = visitor.signs_in("opal")
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
@@ -210,6 +212,7 @@ def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, rehearsed: s
     expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Outdated:")
 
 
+@pytest.mark.long
 def test_an_administrator_asks_for_rehearsals_before_approval(visitor: Visitor) -> None:
     page = visitor.signs_in("ada")
     page.goto("/administration?tab=rules")

@@ -90,6 +90,7 @@ def test_a_route_goes_round_a_timed_zone_at_its_times_alone_and_the_page_says_so
     in_both_themes(page, picture, "plan-legal-zone-phone")
 
 
+@pytest.mark.long
 def test_what_does_not_fit_in_one_flight_is_shown_as_several(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     uav = {"name": "Kite", "position": region.east, "battery_wh": region.sortie_battery_wh, "max_airspeed_mps": 15.0, "sorties": 4}
@@ -101,6 +102,7 @@ def test_what_does_not_fit_in_one_flight_is_shown_as_several(visitor: Visitor, p
     in_both_themes(page, picture, "plan-sorties")
 
 
+@pytest.mark.long
 def test_on_a_phone_several_warnings_take_one_line(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal", size=(390, 844), touch=True)
     towers = asks(page, f"/assets?kind=tower&bbox={region.spread_towers}&limit=200")["features"]

@@ -48,6 +48,7 @@ def longest_line(page: Page) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     return max(((line, asks(page, f"/assets/{line['id']}/supports")["supports"]) for line in lines), key=lambda found: len(found[1]))
 
 
+@pytest.mark.long
 def test_a_lasso_takes_the_towers_and_bridges_inside_it(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     tower = find_pickable(page).tower
@@ -110,6 +111,7 @@ def test_a_stretch_between_two_towers_is_taken_tower_by_tower_or_flown_along(vis
     expect(page.get_by_role("radio", name="Point")).to_be_checked()
 
 
+@pytest.mark.long
 def test_every_bridge_of_a_railway_is_picked_from_its_row(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     railways = asks(page, "/assets?kind=railway&flyable=true&limit=200")["features"]
@@ -148,6 +150,7 @@ def test_a_search_takes_all_that_match_and_is_filtered(visitor: Visitor) -> None
     expect(page.get_by_text("No asset matches “no such thing” with these filters.")).to_be_visible()
 
 
+@pytest.mark.long
 def test_enter_waits_for_what_has_been_typed(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     line, _ = longest_line(page)
@@ -197,6 +200,7 @@ def tasks(page: Page) -> list[str]:
     return [str(button.get_attribute("title")).removesuffix(". Change task, priority") for button in buttons.all()]
 
 
+@pytest.mark.long
 def test_a_kml_is_looked_up_and_its_unknown_points_are_added_by_their_coordinates(
     visitor: Visitor, picture: Callable[[Page, str], None]
 ) -> None:
@@ -270,6 +274,7 @@ def osm_of(page: Page, asset: int) -> str:
     return str(asks(page, f"/assets/{asset}")["properties"]["osm"])
 
 
+@pytest.mark.long
 def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_undone(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     count = adds_all(page, str(region.voltage_kv))
@@ -296,6 +301,7 @@ def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_un
     expect(undo).to_be_disabled()
 
 
+@pytest.mark.long
 def test_the_targets_of_a_folded_line_are_passed_and_removed_at_once_by_keyboard(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     _line, supports = longest_line(page)

@@ -57,6 +57,7 @@ def test_a_zone_that_is_drawn_on_the_map_outdates_the_plan_which_then_keeps_clea
         removes_zone(page, zone["id"])
 
 
+@pytest.mark.long
 def test_a_click_makes_a_circle_and_escape_leaves_all_as_it_was(visitor: Visitor) -> None:
     page = visitor.signs_in("ada")
     opens_mission(page, "No fire")
@@ -70,6 +71,7 @@ def test_a_click_makes_a_circle_and_escape_leaves_all_as_it_was(visitor: Visitor
     expect(page.get_by_text("Draw a line round the zone")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_without_the_right_to_change_zones_it_is_not_offered(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Not mine")

@@ -30,6 +30,7 @@ def both_open(visitor: Visitor, address: str) -> tuple[Page, Page]:
     return mine, theirs
 
 
+@pytest.mark.long
 def test_what_one_changes_arrives_at_the_other_by_itself(visitor: Visitor) -> None:
     address = stores_mission(visitor.signs_in("opal"), "Seen by two")
     mine, theirs = both_open(visitor, address)
@@ -48,6 +49,7 @@ def test_what_one_changes_arrives_at_the_other_by_itself(visitor: Visitor) -> No
     expect(theirs.locator("#others")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_a_save_takes_no_focus_from_the_notices(visitor: Visitor) -> None:
     mine = visitor.signs_in("opal")
     opens_planned(mine, "Out of reach", more=[{"position": region.far_away}])
@@ -60,6 +62,7 @@ def test_a_save_takes_no_focus_from_the_notices(visitor: Visitor) -> None:
     expect(remove).to_be_focused()
 
 
+@pytest.mark.long
 def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visitor) -> None:
     address = stores_mission(visitor.signs_in("opal"), "Different parts")
     mine, theirs = both_open(visitor, address)
@@ -160,6 +163,7 @@ def test_the_history_says_in_words_who_did_what(visitor: Visitor, picture: Calla
     picture(page, "mission-history")
 
 
+@pytest.mark.long
 def test_the_address_to_share_leads_to_the_same_mission_and_place(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     address = stores_mission(page, "Shared")

@@ -123,6 +123,7 @@ def test_a_save_in_one_window_leaves_the_changes_of_another(visitor: Visitor) ->
     expect(first.locator("#target-list .target")).to_have_count(1)
 
 
+@pytest.mark.long
 def test_a_cleared_selection_stays_cleared(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
     picks_from_the_search(page, f"{region.voltage_kv} kV")
@@ -137,6 +138,7 @@ def test_a_cleared_selection_stays_cleared(visitor: Visitor) -> None:
     expect(page.get_by_text("Your unsaved mission is back.")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_saving_keeps_what_can_be_undone(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
     picks_from_the_search(page, f"{region.voltage_kv} kV")
@@ -150,6 +152,7 @@ def test_saving_keeps_what_can_be_undone(visitor: Visitor) -> None:
     expect(page.locator("#target-list .target")).to_have_count(2)
 
 
+@pytest.mark.long
 def test_a_notice_about_an_empty_selection_goes_with_the_first_pick(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
     page.keyboard.press("p")
@@ -175,6 +178,7 @@ def test_an_ended_session_leads_to_the_door_and_back_to_the_selection(visitor: V
     assert targets(page) == picked
 
 
+@pytest.mark.long
 def test_what_one_picked_is_not_shown_to_the_next_at_the_same_browser(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
     picks_from_the_search(page, f"{region.voltage_kv} kV")

@@ -33,6 +33,7 @@ def test_it_writes_three_files_and_prints_their_paths(written: tuple[Path, str])
     assert "synthetic" in output
 
 
+@pytest.mark.long
 def test_two_runs_write_the_same_bytes(written: tuple[Path, str], tmp_path: Path) -> None:
     call_command("make_demo_region", str(tmp_path / "made" / "on the way"), stdout=StringIO())
     for name in NAMES:
@@ -68,6 +69,7 @@ def test_the_terrain_file_holds_the_drawn_heights_where_they_were_drawn(written:
         assert (file.reference_systems, file.vertical_datum) == (["WGS 84"], "EGM96")
 
 
+@pytest.mark.long
 @pytest.mark.django_db
 def test_the_imported_terrain_gives_the_drawn_heights_at_the_bases(written: tuple[Path, str]) -> None:
     import_terrain(path=written[0] / "demo-terrain.tif", is_synthetic=True)

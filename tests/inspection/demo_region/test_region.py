@@ -58,6 +58,7 @@ def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [20_260, 1, 2])
 def test_about_3000_supports_60_bridges_2_railways_and_8_zones_from_any_seed(seed: int) -> None:
     counts = make_region(seed).counts()
@@ -157,6 +158,7 @@ def test_terrain_has_hills_without_cliffs(region: DemoRegion) -> None:
     assert np.abs(np.diff(heights, axis=0)).max() < 60, "under 45 degrees over a cell of 62 m"
 
 
+@pytest.mark.long
 def test_the_same_seed_writes_the_same_file_and_another_seed_another(tmp_path: Path) -> None:
     paths = [tmp_path / f"{index}.osm.pbf" for index in range(3)]
     for path, seed in zip(paths, [7, 7, 8], strict=True):

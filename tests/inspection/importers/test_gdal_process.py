@@ -51,6 +51,7 @@ def test_the_child_cannot_connect_start_programs_write_or_take_memory(call: str,
     assert in_the_limits(f"print(fault_of(lambda: {call}))").stdout.strip() == fault
 
 
+@pytest.mark.long
 def test_a_child_that_does_not_end_is_ended_after_its_processor_time() -> None:
     began_s = processor_s()
     assert in_the_limits("while True: pass").returncode < 0

@@ -187,6 +187,7 @@ def test_a_hostile_zone_file_is_refused_before_it_costs_much_and_the_database_li
     assert (NoFlyZone.objects.count(), DataImport.objects.count(), ZoneSet.objects.count()) == (0, 0, 0)
 
 
+@pytest.mark.long
 def test_ten_thousand_polygons_are_taken(tmp_path):
     features = [feature(square(k % 100 * 0.3, k // 100 * 0.2), name=f"zone {k}") for k in range(10_000)]
     assert import_zones(path=write(tmp_path / "many.geojson", *features)).counts["new"] == 10_000

@@ -152,6 +152,7 @@ def test_ways_equal_those_of_networkx(planning):
                 assert nx.path_weight(copy, way, "metres") == pytest.approx(travel.length_m[source, sink], abs=1e-6)
 
 
+@pytest.mark.long
 @given(plannings())
 def test_costs_are_symmetric_and_obey_the_triangle_inequality(planning):
     graph, outward, _ = planning
@@ -174,6 +175,7 @@ def test_ways_equal_those_of_a_search_over_the_whole_graph(planning):
     assert (np.isinf(travel.length_m) == np.isinf(searched.length_m)).all()
 
 
+@pytest.mark.long
 @given(plannings())
 def test_condensing_keeps_every_edge_and_node_once(planning):
     graph, _, _ = planning

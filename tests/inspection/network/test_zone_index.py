@@ -145,6 +145,7 @@ def jagged(lon, corners=5_000):
     return Polygon(np.column_stack([lon + radius * np.cos(angle), radius * np.sin(angle)]))
 
 
+@pytest.mark.long
 def test_threads_that_share_an_index_get_the_answers_that_one_thread_gets():
     """In a process of its own: what this guards against is a crash of the interpreter."""
     script = """

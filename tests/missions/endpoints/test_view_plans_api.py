@@ -99,6 +99,7 @@ def test_photos_of_a_tower_keep_clear_of_its_line_and_show_it(client: Client) ->
     assert plan["route"][0] == plan["route"][-1]
 
 
+@pytest.mark.long
 def test_over_a_slope_every_photo_is_at_an_allowed_height_above_its_own_ground(client: Client, tmp_path: Path) -> None:
     tower = world(height_m=30.0).towers[2]
     slope_m = 200.0 + np.repeat(np.arange(300.0)[:, None], 300, axis=1) * 20.0  # from post to post, 111 m to the south
@@ -145,6 +146,7 @@ def test_a_pattern_that_is_not_known_and_a_detail_without_a_gsd_are_refused(clie
         assert list(response.json()["error"]["details"]) == [field]
 
 
+@pytest.mark.long
 def test_a_finer_gsd_takes_more_photos_and_one_that_no_lens_reaches_none(client: Client) -> None:
     tower = world(height_m=30.0).towers[2]
     counts = [len(planned(client, {"asset": tower.pk, "camera": CAMERA, "gsd_mm": gsd_mm})["photos"]) for gsd_mm in (8, 4)]
@@ -161,6 +163,7 @@ def test_a_zone_around_the_tower_is_named(client: Client) -> None:
     assert plan["zones"] == [{"id": zone.pk, "name": "Airport"}]
 
 
+@pytest.mark.long
 def test_a_parallel_line_is_kept_clear_of_too(client: Client) -> None:
     tower = world(height_m=30.0).towers[2]
     east_m = LocalFrame.around(*tower.centre.coords)

@@ -232,6 +232,7 @@ def ridge(folder: Path) -> None:
     import_terrain(path=folder / "ridge.tif", vertical_datum="EGM96")
 
 
+@pytest.mark.long
 def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_path: Path) -> None:
     """The network's nodes know nothing of the ridge: the search's own figures would say that next to nothing is missing."""
     here = world()

@@ -106,6 +106,7 @@ def test_what_is_flown_is_slow_beside_wires_and_aims(here: World, client: Client
     assert not answer["plan"]["routes"][0]["speeds_by_hand"]
 
 
+@pytest.mark.long
 def test_photos_are_planned_once_for_the_same_map(here: World, client: Client) -> None:
     uav, counted = tern(), mock.Mock(wraps=photo_flights.detail_plan)
     with mock.patch.object(photo_flights, "detail_plan", counted):
@@ -126,6 +127,7 @@ def test_a_plan_of_photos_on_the_map_is_the_missions(here: World, client: Client
     assert [row["position"] for row in photos(mission["plan"])] == [pytest.approx(own["position"], abs=1e-7) for own in plan["photos"]]
 
 
+@pytest.mark.long
 def test_an_overview_is_flown_as_four_photos_and_kept_apart_from_every_part(here: World, client: Client) -> None:
     uav = tern()
     UavType.objects.update(cameras=[camera_to_json(WIDE_CAMERA)])
@@ -178,6 +180,7 @@ def test_terrain_that_ends_before_the_next_tower_is_not_enough(client: Client, t
     assert unassigned(made(client, body(photos_of(here.towers[2])))) == "no_photos: photos_need_terrain"
 
 
+@pytest.mark.long
 def test_terrain_that_ends_before_the_start_is_refused(client: Client, tmp_path: Path) -> None:
     here = world(height_m=30.0)
     terrain(tmp_path, origin=(10.004, 56.15))
@@ -277,6 +280,7 @@ def test_photos_are_not_approved_on_another_map(here: World, client: Client) -> 
     assert "photos_outdated" in [reason.code for reason in reasons_against(mission, now=timezone.now())]
 
 
+@pytest.mark.long
 def test_a_map_that_changes_while_photos_are_planned_has_them_planned_anew(here: World, client: Client) -> None:
     """Photos and all else are of one map: a wire that came meanwhile is kept clear of."""
     uav, asked = tern(), []

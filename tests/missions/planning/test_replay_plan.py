@@ -52,6 +52,7 @@ def written(asked: PlanRequest, path: Path) -> Path:
     return path
 
 
+@pytest.mark.long
 def test_random_plans_are_made_again_as_they_were(region_file: Any, tmp_path: Path) -> None:
     bring_in(region_file("quillmoor.osm.pbf"), tmp_path, random.Random(3), is_hilly=True)
     draw = random.Random(3)

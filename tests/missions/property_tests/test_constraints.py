@@ -203,6 +203,7 @@ def test_a_run_beyond_the_range_is_left_out_as_a_whole_and_says_so(here: World) 
     assert all(message.endswith("the run is left out as a whole.") for _, message in reasons(plan).values())
 
 
+@pytest.mark.long
 def test_with_more_targets_than_are_proven_the_cost_of_the_locks_is_told_too(here: World) -> None:
     points = [TargetRequest(here.line.pk, LonLat(10.0 + 0.0014 * number, 56.0)) for number in range(14)]
     reported: list[PlanProgress] = []

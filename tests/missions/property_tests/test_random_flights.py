@@ -79,6 +79,7 @@ def test_20000_random_missions_keep_every_promise_of_safety(region_file: Any, fi
     _fly(region_file(file_name), tmp_path, missions=SLICE, seed=seed, twice=SELDOM)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("most", [1, 2])
 def test_a_plan_that_runs_out_of_solver_calls_is_as_safe(
     region_file: Any, most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

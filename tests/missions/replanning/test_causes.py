@@ -42,6 +42,7 @@ def middle_of_last_visits(flight: Flight, place: int) -> tuple[float, float]:
     return float(lon), float(lat)
 
 
+@pytest.mark.long
 def test_a_worker_that_ends_while_it_looks_for_zones_leaves_them_to_the_next(flight, monkeypatch):
     zone = worlds.zone_around(middle_of_last_visits(flight, 1), half_deg=0.0008)
 
@@ -92,6 +93,7 @@ def test_a_mission_that_flies_is_marked_at_once_with_the_leg_that_is_still_flown
     assert [mission["is_stale"] for mission in page if mission["id"] == str(flight.mission.pk)] == [True]
 
 
+@pytest.mark.long
 def test_a_leg_that_a_uav_has_behind_it_is_not_marked(flight):
     rows = list(flight.route(1).waypoints.order_by("sequence"))
     targets = [place for place, row in enumerate(rows) if row.kind == "target"]
@@ -112,6 +114,7 @@ def test_of_a_flying_mission_the_time_counts_at_which_its_uavs_come_there(flight
         assert bool(marks(flight)) is is_met
 
 
+@pytest.mark.long
 def test_a_zone_far_from_what_is_left_is_no_reason(flight):
     worlds.zone_around((10.5, 56.5))
     assert suggest_for_zones() == []

@@ -164,6 +164,7 @@ def test_an_offer_ends_when_a_uav_comes_too_near_to_where_it_leaves_its_route(fl
     assert settle_offers(now=until + timedelta(seconds=1)) == 1
 
 
+@pytest.mark.long
 def test_an_offer_is_not_worked_out_again_once_the_mission_has_ended_or_was_offered_too_often(flight, monkeypatch):
     offer = failed_tern(flight)
     monkeypatch.setattr(offers, "MAX_OFFERS_OF_CAUSE", 1)
@@ -176,6 +177,7 @@ def test_an_offer_is_not_worked_out_again_once_the_mission_has_ended_or_was_offe
     assert not flight.mission.replan_offers.filter(state=OfferState.COMPUTING).exists()
 
 
+@pytest.mark.long
 def test_a_step_that_fails_is_the_last(flight):
     accept_offer(offer=failed_tern(flight), actor=flight.author)
     carry(flight.uavs[1])

@@ -31,6 +31,7 @@ pytestmark = pytest.mark.django_db
 UAVS, TARGETS, NEAR_DEG = 3, 9, 0.03
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seeds", "most_offers"), [pytest.param(range(8, 20), 2, id="few"), pytest.param(range(60), 60, id="many", marks=pytest.mark.long)]
 )

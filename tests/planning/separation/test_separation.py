@@ -278,6 +278,7 @@ BLUR_M = 1.01 * STEP_S * 14.0  # what two UAVs can come nearer to each other bet
 FRAME = 0.01  # how far the checker's flat world may be out
 
 
+@pytest.mark.long
 @settings(max_examples=30)
 @given(flights(most=2))
 def test_the_time_between_two_is_what_dense_sampling_finds(pair):

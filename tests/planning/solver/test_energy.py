@@ -62,6 +62,7 @@ def test_the_search_keeps_every_limit_and_finds_no_more_than_there_is(seed: int,
     assert missed > least_missed or (missed == least_missed and value >= least * (1 - 1e-9))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("objective", [Objective.ENERGY, *long(*(other for other in Objective if other != Objective.ENERGY))])
 def test_the_search_finds_the_best_of_nearly_all_small_problems(objective: Objective) -> None:
     problems = [windy_problem(seed, objective, uavs=3, targets=10) for seed in range(5)]

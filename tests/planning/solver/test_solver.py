@@ -187,6 +187,7 @@ def test_same_problem_and_seed_give_the_same_plan() -> None:
     assert solve(problem, seed=11).routes == solve(problem, seed=11).routes
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("objective", [Objective.MAKESPAN, *long(Objective.TOTAL, Objective.TIME)])
 def test_a_large_plan_keeps_every_range_and_leaves_out_only_what_does_not_fit(objective: Objective) -> None:
     problem = random_problem(9, uavs=4, targets=40, stretches=5, range_m=60_000.0, returns=True, objective=objective)
@@ -230,6 +231,7 @@ def test_the_search_keeps_every_limit_whatever_the_problem_holds(seed: int, uavs
     assert missed > least_missed or (missed == least_missed and value >= least * (1 - 1e-9))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("objective", [Objective.TOTAL, *long(Objective.MAKESPAN, Objective.TIME)])
 def test_the_search_finds_the_best_plan_of_nearly_all_small_problems(objective: Objective) -> None:
     problems = [random_problem(seed, uavs=3, targets=12, stretches=4, objective=objective) for seed in range(6)]

@@ -69,6 +69,7 @@ def test_every_sortie_keeps_the_limits(seed: int, objective: Objective, uavs: in
     assert solution.lower_bound <= value * (1 + 1e-12)
 
 
+@pytest.mark.long
 @settings(max_examples=6)
 @given(seed=seeds, objective=st.sampled_from(list(Objective)), uavs=st.integers(1, 3))
 def test_so_does_the_search_and_its_bound_is_one(seed: int, objective: Objective, uavs: int) -> None:

@@ -24,6 +24,7 @@ def at_speeds(waypoints: Waypoints, speed_mps: dict[int, float]) -> Waypoints:
     return Waypoints(RoutePoints(*columns, speed_mps), waypoints.amsl_m, waypoints.relative_m)
 
 
+@pytest.mark.long
 def test_one_leg_at_half_the_speed_is_reached_so_much_later_and_paid_with_its_own_power() -> None:
     """50 m up at 2.5 m/s; 1,000 m at 5 instead of 10 m/s; 1,000 m at 10 m/s."""
     stops = (0, 0, 50, 0), (1000, 0, 50, 0), (2000, 0, 50, 0)

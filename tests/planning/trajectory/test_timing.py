@@ -134,6 +134,7 @@ def test_a_slope_takes_no_less_than_the_power_of_its_flight(far_m: float, rise_m
     assert 0.99 * least_wh[1] <= down_wh <= 1.1 * least_wh[1]
 
 
+@pytest.mark.long
 def test_thin_air_takes_more_of_the_battery() -> None:
     stops = (0, 0, 50, 300), (1000, 0, 50, 300)
     low, high = flown(route(*stops, amsl_m=0)), flown(route(*stops, amsl_m=2000))

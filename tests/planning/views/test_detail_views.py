@@ -87,6 +87,7 @@ def test_the_flight_keeps_the_clearance_from_structures_and_swinging_wires(tower
     assert flight.position[:, 2].max() <= MAX_HEIGHT_M
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("bearing_deg", [0.0, 75.0])
 def test_over_hills_no_part_of_a_flight_is_too_low_or_too_high(bearing_deg: float) -> None:
     def hills_m(at: np.ndarray) -> np.ndarray:
@@ -114,6 +115,7 @@ def test_a_flight_that_would_lead_above_the_limit_is_refused() -> None:
         view_flight(views.poses, stands.keep_out, np.array([0.0, 0.0, 130.0]))
 
 
+@pytest.mark.long
 def test_hostile_cameras_are_refused_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     stands = standing(TOWERS["lattice, 380 kV, barrel"])
     tiny = Camera("tiny", 6.4, 4.8, 320, 240, (400.0,))
@@ -124,6 +126,7 @@ def test_hostile_cameras_are_refused_at_once(monkeypatch: pytest.MonkeyPatch) ->
     assert detail_views(stands.solid, stands.keep_out, narrow, DetailRules(0.1)).candidates <= MAX_CANDIDATES + 1_000
 
 
+@pytest.mark.long
 def test_more_photos_than_the_limit_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     tower, camera, gsd_m = CASES[4]
     needed, stands = len(planned(tower, camera, gsd_m).poses), standing(TOWERS[tower])
@@ -132,6 +135,7 @@ def test_more_photos_than_the_limit_are_refused(monkeypatch: pytest.MonkeyPatch)
         detail_views(stands.solid, stands.keep_out, camera, DetailRules(gsd_m))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("tower", "camera", "gsd_m", "patch_m"), [(*CASES[1], 0.25), (*CASES[4], 0.08)], ids=["lattice", "pole"])
 def test_coverage_equals_that_of_rendered_pictures_in_which_each_face_has_its_number(
     tower: str, camera: Camera, gsd_m: float, patch_m: float
@@ -188,6 +192,7 @@ def test_what_cannot_be_shown_has_its_reason() -> None:
     assert Limit.HEIGHT in limits(camera, high)
 
 
+@pytest.mark.long
 def test_a_camera_that_shows_nothing_gets_no_photo_and_no_error() -> None:
     stands = standing(TOWERS["lattice, 765 kV, delta"])
     views = detail_views(stands.solid, stands.keep_out, WIDE, DetailRules(0.003))

@@ -61,6 +61,7 @@ def test_no_photo_looks_straight_down() -> None:
     assert planned().poses.pitch_deg.min() >= -80.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slope", [0.1, -0.3])
 def test_over_a_slope_every_place_of_it_is_as_high_as_asked(slope: float) -> None:
     flight = flown(slope)

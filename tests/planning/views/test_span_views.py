@@ -83,6 +83,7 @@ def test_every_place_of_the_wires_is_in_photos_from_both_sides(tower: str, camer
     assert all(row.gsd_m is not None and row.gsd_m <= GSD_M for row in plan.components)
 
 
+@pytest.mark.long
 @given(
     st.floats(0.0, 360.0), st.sampled_from(sorted(TOWERS)), st.sampled_from([0.003, 0.006, 0.01]), st.sampled_from([ZOOM, FULL_FRAME, WIDE])
 )

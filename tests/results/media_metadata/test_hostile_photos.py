@@ -127,6 +127,7 @@ def test_other_depths_and_colours_are_shown(kind: str, mode: str, tmp_path: Path
     assert (found.fault, found.derivatives["400"]) == ("", (300, 200))
 
 
+@pytest.mark.long
 def test_a_photo_of_100_megapixels_is_shown_within_the_limits_of_memory(tmp_path: Path) -> None:
     found = read(file_of(picture((14_000, 7_200)), quality=60), tmp_path)
     assert (found.fault, found.derivatives["1600"]) == ("", (1_600, 823))

@@ -21,6 +21,7 @@ def planned(camera: Camera) -> ViewPlan:
     return detail_plan(standing(TOWERS[TOWER]).site, camera, DetailRules(0.004), ViewSpeeds())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("gimbal", "turns_to_target", "weather"),
     [

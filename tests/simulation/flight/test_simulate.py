@@ -24,6 +24,7 @@ def route(*metres: tuple[float, float], height_m: float = 12.0, speed_mps: float
     return {"waypoints": waypoints, "speed_mps": speed_mps}
 
 
+@pytest.mark.long
 def test_route_is_flown_from_a_shell_without_database_and_redis(tmp_path: Path) -> None:
     (tmp_path / "route.json").write_text(json.dumps(route((0, 0), (30, 0), (30, 20))))
     command = ["manage.py", "simulate", tmp_path / "route.json", "--wind", "6,350", "--gusts", "1.5", "--seed", "3"]

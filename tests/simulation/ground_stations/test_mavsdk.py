@@ -224,6 +224,7 @@ def test_a_mission_is_flown_paused_resumed_and_ends_at_home(station):
     assert station.telemetry.position().latitude_deg == pytest.approx(AT.lat, abs=1.5 * NORTH_DEG)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("station", [SimulatedAutopilot.PX4], indirect=True)
 def test_the_mission_plugin_flies_its_own_items(station):
     """Not on ArduPilot: there the plugin has its first place lost as home, and reads back a frame that it does not know."""

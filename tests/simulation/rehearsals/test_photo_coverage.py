@@ -133,6 +133,7 @@ def test_photos_flown_in_wind_show_what_was_promised(here: World, client: Client
         assert (own["deviations"], own["not_counted"]) == ([], [])
 
 
+@pytest.mark.long
 def test_an_overview_flown_in_wind_shows_what_was_promised(here: World, client: Client, person: User) -> None:
     overview = {"kind": "photo", "views": {"pattern": "overview", "camera": camera_to_json(WIDE)}}
     mission = planned(client, {"asset": here.towers[2].pk, "task": overview}, camera=WIDE)
@@ -191,6 +192,7 @@ def test_photos_that_a_rehearsal_missed_or_took_of_something_else_are_named(here
     assert second["off_m"] < 0.5 < 30.0 < second["off_deg"] <= 60.5
 
 
+@pytest.mark.long
 def test_a_rehearsal_of_another_plan_is_told_and_one_that_is_nowhere_is_not_there(here: World, client: Client, person: User) -> None:
     mission = planned(client, photographed(here.towers[2]))
     rehearsal = rehearsed(mission, person, "calm")
@@ -219,6 +221,7 @@ def test_height_above_take_off_counts_more_than_a_height_above_the_sea_with_the_
     assert found["achieved"]["coverage"]["shown"] == pytest.approx(found["promised"]["coverage"]["shown"], abs=1e-3)
 
 
+@pytest.mark.long
 def test_without_a_photo_its_components_are_shown_less_and_the_rest_is_planned_by_one_request(here: World, client: Client) -> None:
     mission = planned(client, photographed(here.towers[2]), photographed(here.towers[4]))
     captured(mission, [*photo_waypoints(mission, 0), *photo_waypoints(mission, 1)[:2]])
@@ -253,6 +256,7 @@ PROVE_NOTHING: list[tuple[dict[str, Any], str]] = [
 ]
 
 
+@pytest.mark.long
 def test_photos_that_prove_nothing_are_not_counted_and_told(here: World, client: Client) -> None:
     mission = planned(client, photographed(here.towers[2]))
     rows = photo_waypoints(mission)
@@ -268,6 +272,7 @@ def test_photos_that_prove_nothing_are_not_counted_and_told(here: World, client:
         assert first["off_m"] > 1_000.0 if reason == "far" else first["off_m"] is None, changed
 
 
+@pytest.mark.long
 def test_a_photo_without_waypoint_belongs_to_the_nearest_tower(here: World, client: Client) -> None:
     mission = planned(client, photographed(here.towers[2]), photographed(here.towers[3]))
     captured(mission, [*photo_waypoints(mission, 0), *photo_waypoints(mission, 1)], waypoint_sequence=None, flight=None)
@@ -290,6 +295,7 @@ def test_what_was_proven_is_kept_until_a_photo_comes(here: World, client: Client
     assert found["is_short"] is False
 
 
+@pytest.mark.long
 def test_targets_come_in_pages_and_all_of_them_in_the_file(here: World, client: Client) -> None:
     mission = planned(client, photographed(here.towers[1]), photographed(here.towers[3]))
     captured(mission, photo_waypoints(mission, 0))

@@ -27,6 +27,7 @@ def test_a_flight_takes_what_was_planned(route: Callable[[float], FrozenRoute], 
     assert abs(found.energy_ratio - 1.0) <= MAX_ENERGY_ERROR
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("code", "speed_mps", "leg_m"), [("inspector", 14.0, 150.0), ("inspector", 14.0, 30.0), ("iris", 6.0, 60.0)])
 def test_sharp_turns_take_what_was_planned(code: str, speed_mps: float, leg_m: float) -> None:
     """Right angle after right angle: no more than 5 % too little, by the Iris, and 10 % too much, by the Inspector, which turns faster."""

@@ -37,6 +37,7 @@ def check_missions(folder: Path, missions: int, seed: int) -> None:
     assert not faults, "\n".join(faults)
 
 
+@pytest.mark.long
 def test_2_random_missions_pass_their_rehearsal(tmp_path: Path) -> None:
     check_missions(tmp_path, 2, seed=1)
 

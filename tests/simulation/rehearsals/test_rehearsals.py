@@ -115,6 +115,7 @@ def test_wind_that_the_uav_cannot_fly_in_fails_with_its_reason(mission: Mission,
     assert any(finding["level"] == "fail" for finding in findings[1:])  # and it is seen in what was flown
 
 
+@pytest.mark.long
 def test_wind_that_its_airframe_flies_in_and_the_uav_does_not_fails(mission: Mission, person: User) -> None:
     """What flies for it is as heavy, but stronger."""
     mission.mission_uavs.update(performance={"mass_kg": 3.8, "battery_wh": 260.0, "max_airspeed_mps": 12.0})
@@ -136,6 +137,7 @@ def test_a_battery_that_is_too_small_fails_with_its_reason(here: World, person: 
     assert findings["reserve"]["facts"]["percent"] < 20.0
 
 
+@pytest.mark.long
 def test_a_route_that_ends_in_hovering_ends_there(here: World, person: User) -> None:
     draft = create_mission(
         organisation=person.organisation, author=person, name="Bexley", request=worlds.request(here.towers[0], uavs=(worlds.uav(),))
@@ -215,6 +217,7 @@ def test_one_that_is_cancelled_before_a_worker_comes_is_not_flown(mission: Missi
     assert not RehearsalRun.objects.exclude(level="").exists()
 
 
+@pytest.mark.long
 def test_what_was_flown_alike_lately_is_taken_over_and_not_flown_again(mission: Mission, person: User) -> None:
     first = rehearsed(mission, person, "calm").runs.get()
     with mock.patch("simulation.services.rehearsals.fly", side_effect=AssertionError("it is flown")):
@@ -225,6 +228,7 @@ def test_what_was_flown_alike_lately_is_taken_over_and_not_flown_again(mission: 
     assert run.tracks.get().flights == first.tracks.get().flights
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("what", ["another seed", "another air", "another ground", "long ago", "asked for afresh"])
 def test_what_differs_is_flown(mission: Mission, person: User, what: str) -> None:
     first = rehearsed(mission, person, "calm")
@@ -247,6 +251,7 @@ class Flown(Exception):
     """A flight has begun."""
 
 
+@pytest.mark.long
 def test_a_worker_that_takes_over_flies_only_what_is_left(mission: Mission, person: User) -> None:
     rehearsal = asked(mission, person, "calm", "as-planned")
     kept = {"level": "pass", "findings": [], "routes": [], "meetings": []}
@@ -283,12 +288,14 @@ def test_a_failed_rehearsal_of_this_plan_is_acknowledged_with_a_reason_that_is_k
     assert entry.after["failed_rehearsal_reason"] == "The strong wind is not forecast"
 
 
+@pytest.mark.long
 def test_a_failed_rehearsal_of_another_plan_needs_no_acknowledgement(mission: Mission, person: User) -> None:
     rehearsal = rehearsed(mission, person, "as-planned")
     Rehearsal.objects.filter(pk=rehearsal.pk).update(level="fail", content_sha256="0" * 64)
     assert reasons(mission, person) == []
 
 
+@pytest.mark.long
 def test_no_reason_replaces_a_rehearsal_that_the_organisation_requires(mission: Mission, person: User) -> None:
     set_rule(organisation=person.organisation, actor=person, requires=True)
     rehearsal = rehearsed(mission, person, "as-planned")
@@ -313,6 +320,7 @@ def test_approval_asks_for_a_rehearsal_of_this_very_plan_that_passed(mission: Mi
     assert mission_of_organisation(person.organisation, mission.pk).state == MissionState.APPROVED
 
 
+@pytest.mark.long
 def test_what_was_rehearsed_in_other_wind_than_is_planned_by_now_is_not_approved(mission: Mission, person: User) -> None:
     """A UAV with airspeed to spare flies the same route, to the last item."""
     set_rule(organisation=person.organisation, actor=person, requires=True)
@@ -328,6 +336,7 @@ def test_what_was_rehearsed_in_other_wind_than_is_planned_by_now_is_not_approved
     assert reasons_without_rehearsal(loaded(mission)) == []
 
 
+@pytest.mark.long
 def test_what_was_rehearsed_without_a_mast_that_the_network_has_by_now_is_not_approved(mission: Mission, person: User, here: World) -> None:
     """The network follows the ground some minutes later, under the same revision."""
     set_rule(organisation=person.organisation, actor=person, requires=True)
@@ -343,6 +352,7 @@ def test_what_was_rehearsed_without_a_mast_that_the_network_has_by_now_is_not_ap
         rehearsed(mission, person, "as-planned")
 
 
+@pytest.mark.long
 def test_a_rehearsal_speaks_of_the_ground_that_it_was_flown_over(mission: Mission, person: User, here: World) -> None:
     """A zone that was away while it was flown, and is back, was not looked at."""
     set_rule(organisation=person.organisation, actor=person, requires=True)
@@ -371,6 +381,7 @@ def test_what_was_rehearsed_on_other_ground_is_not_approved(mission: Mission, pe
     assert reasons(mission, person) == []
 
 
+@pytest.mark.long
 def test_a_route_that_begins_in_the_air_says_that_its_rehearsal_took_off(mission: Mission, person: User) -> None:
     plan = plan_to_fly(loaded(mission))
     begun = replace(plan, routes=tuple(replace(route, route=replace(route.route, begun_by=0)) for route in plan.routes))

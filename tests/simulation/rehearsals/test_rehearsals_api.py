@@ -94,6 +94,7 @@ def test_another_organisation_finds_nothing(mission: Mission, person: User) -> N
     assert post(stranger, path(mission, f"/{rehearsal.pk}/cancel")).status_code == 404
 
 
+@pytest.mark.long
 def test_the_verdict_says_in_words_by_route_and_target_why(mission: Mission, person: User) -> None:
     mission.mission_uavs.update(performance={"battery_wh": 11.1})
     rehearsal = rehearsed(mission, person, "calm")
@@ -122,6 +123,7 @@ def test_what_was_rehearsed_is_out_of_date_once_the_plan_is_another_one(mission:
     assert client.get(f"/api/v1/{path(mission)}/{rehearsal.pk}/track").json()["routes"][0]["planned"] == []
 
 
+@pytest.mark.long
 def test_the_list_marks_a_mission_whose_present_plan_failed_its_rehearsal(mission: Mission, person: User) -> None:
     client = client_of(person)
 

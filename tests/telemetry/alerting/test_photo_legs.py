@@ -67,6 +67,7 @@ def watched(**moved: float) -> Watch:
     return watch
 
 
+@pytest.mark.long
 def test_a_flight_in_strong_wind_with_gusts_raises_nothing() -> None:
     assert watched().events == []
 

@@ -19,6 +19,7 @@ from tests.telemetry.gateway.station import wait_for
 pytestmark = pytest.mark.django_db(transaction=True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot_type", list(SimulatedAutopilot))
 def test_what_a_camera_reports_is_kept_and_told(autopilot_type: SimulatedAutopilot, uav: Uav, tmp_path: Path) -> None:
     port, camera = free_port(), catalogue()["dji-m30t-wide"].camera

@@ -69,6 +69,7 @@ def test_a_whole_mission_is_flown_over_the_link(flight: Flight) -> None:
     assert {later - before for before, later in pairwise(polls)} == {5.0}
 
 
+@pytest.mark.long
 def test_photos_are_reported_once_also_after_a_lost_link(
     here: World, kite: UavClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -120,6 +121,7 @@ def test_a_uav_without_a_link_flies_on_asks_again_at_once_and_loses_nothing(flig
     assert InspectionResult.objects.count() == 3
 
 
+@pytest.mark.long
 def test_a_link_that_comes_and_goes_loses_nothing(flight: Flight) -> None:
     chance = random.Random(7)
     flight.take_off()
@@ -175,6 +177,7 @@ def test_a_companion_that_crashes_at_any_request_loses_nothing(flight: Flight, s
 ERRORS = [Answer(500), Answer(503, None, {"retry-after": "2"}), Answer(429, None, {"retry-after": "7"}), Answer(401)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("answer", [*ERRORS[1::2], *long(*ERRORS[::2])], ids=lambda answer: str(answer.status))
 def test_a_server_that_answers_with_an_error_is_asked_again_and_nothing_is_lost(flight: Flight, answer: Answer) -> None:
     flight.take_off()

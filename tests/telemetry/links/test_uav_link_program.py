@@ -68,6 +68,7 @@ def sent(endpoint: Endpoint, kite: UavClient, body: dict[str, object]) -> tuple[
         return answer.status, time.monotonic() - began_s
 
 
+@pytest.mark.long
 def test_a_report_is_answered_while_pages_take_every_thread(endpoint: Endpoint) -> None:
     kite = linked_uav()
     waiting = [threading.Thread(target=_ask_for_a_page, args=[endpoint], daemon=True) for _ in range(16)]

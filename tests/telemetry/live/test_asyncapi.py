@@ -90,6 +90,7 @@ def test_what_the_document_does_not_name_hangs_up(here: Endpoint) -> None:
     assert close_code(live) == 4400
 
 
+@pytest.mark.long
 def test_a_job_is_told_as_the_document_says(here: Endpoint, document: Any) -> None:
     user = a_user()
     job = create_job(organisation=user.organisation, created_by=user, task="missions.tasks.solve_plan", parameters={}, message="Planning")

@@ -75,6 +75,7 @@ def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_al
         slow.receive()
 
 
+@pytest.mark.long
 @pytest.mark.django_db(transaction=True)
 def test_a_page_that_asks_again_is_whole_again(here: Endpoint) -> None:
     uav = a_uav("Tern")

@@ -26,6 +26,7 @@ def test_a_flight_is_held_goes_on_and_returns(transport, uav, mission, new_vehic
         lands(vehicle)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("kind", "mode"), [(CommandKind.LAND, Mode.LAND), (CommandKind.ABORT, Mode.RETURN)])
 def test_a_flight_is_ended(kind, mode, uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
@@ -36,6 +37,7 @@ def test_a_flight_is_ended(kind, mode, uav, mission, new_vehicle, tmp_path):
         lands(vehicle)
 
 
+@pytest.mark.long
 def test_a_refusal_to_arm_is_told_in_its_own_words(uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
         vehicle = new_vehicle(port_of(gateway), parameters={"BATT_MONITOR": 4.0, "BATT_ARM_VOLT": 20.0})
@@ -45,6 +47,7 @@ def test_a_refusal_to_arm_is_told_in_its_own_words(uav, mission, new_vehicle, tm
         assert "below minimum arming voltage" in start.outcome, start.outcome
 
 
+@pytest.mark.long
 def test_a_list_that_another_ground_station_has_changed_is_not_flown(uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
         vehicle = new_vehicle(port_of(gateway))

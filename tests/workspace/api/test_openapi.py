@@ -125,6 +125,7 @@ def test_every_operation_has_a_summary_and_says_which_errors_it_knows(document: 
         assert {"400", "401", "403", "404", "503"} <= set(each["responses"])
 
 
+@pytest.mark.long
 def test_the_document_is_made_once_however_many_ask(monkeypatch: pytest.MonkeyPatch, settings: Any, tmp_path: Path) -> None:
     settings.STATIC_ROOT = tmp_path
     api_document._stored.cache_clear()

@@ -104,6 +104,7 @@ def test_a_job_whose_worker_was_stopped_at_the_time_limit_is_not_tried_again(by:
     assert (job.state, job.attempts, job.error["code"]) == (JobState.FAILED, 1, "took_too_long")
 
 
+@pytest.mark.long
 def test_processor_time_is_bounded_and_waiting_is_not() -> None:
     with processor_limit(0.3):
         time.sleep(0.6)

@@ -185,6 +185,7 @@ def test_a_job_that_is_deleted_between_two_looks_closes_the_socket(monkeypatch: 
     assert async_to_sync(followed)(a_user()) == ENDED
 
 
+@pytest.mark.long
 def test_nobody_waits_for_a_redis_that_does_not_answer(
     settings: Any, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -208,6 +209,7 @@ def test_plain_http_is_told_to_upgrade(here: Endpoint) -> None:
     assert json.loads(caught.value.read())["error"]["code"] == "upgrade_required"
 
 
+@pytest.mark.long
 def test_without_the_program_the_door_says_try_again(here: Endpoint) -> None:
     (here.folder / "live.sock").rename(here.folder / "away.sock")
     try:

@@ -69,6 +69,7 @@ def first(live: WebSocket) -> dict[str, Any]:
     return message
 
 
+@pytest.mark.long
 def test_one_too_many_of_a_user_is_closed_with_a_code_and_another_user_is_let_in(here: Endpoint) -> None:
     user = a_user()
     sockets = opened(here, user, OF_A_USER)
@@ -86,6 +87,7 @@ def test_one_too_many_of_an_address_is_closed_with_a_code(here: Endpoint) -> Non
     assert len(sockets) == 12
 
 
+@pytest.mark.long
 def test_those_of_all_live_programs_are_counted_together(here: Endpoint) -> None:
     path = here.folder / "live-2.sock"
     with running([part.replace("live.sock", path.name) for part in here.live], **here.environment):

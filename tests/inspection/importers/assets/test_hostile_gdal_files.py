@@ -116,6 +116,7 @@ def test_it_is_refused_with_its_place_and_the_program_is_unharmed(name: str, tmp
     assert len(list(Path("/proc/self/fd").iterdir())) <= open_files
 
 
+@pytest.mark.long
 def test_a_block_in_endless_columns_and_rows_is_refused_when_it_is_read(tmp_path: Path) -> None:
     path = dxf_array(tmp_path)
     ended = "takes longer than 1 s|has more than 200000 rows"

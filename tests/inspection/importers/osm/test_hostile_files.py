@@ -82,6 +82,7 @@ def test_a_hostile_file_is_refused_before_it_costs_much(name, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.long
 def test_an_honest_blob_of_the_largest_size_passes_the_gate(tmp_path):
     path = tmp_path / "large.osm.pbf"
     path.write_bytes(HEADER + blob(b"OSMData", field(2, random.Random(1).randbytes(MAX_BLOB_BYTES // 2 - 3).hex().encode())))

@@ -216,6 +216,7 @@ def test_a_hostile_file_is_refused_with_little_memory(tmp_path: Path, content: b
     assert [found.name for found in tmp_path.iterdir()] == ["heights.tif"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("packing", [{}, {"tiled": "yes", "blockxsize": 64, "blockysize": 64, "predictor": 3}])
 def test_damage_anywhere_in_deflated_heights_is_refused(tmp_path: Path, packing: dict[str, str]) -> None:
     """GDAL does not look at their checksums: it reads 39 of 40 such files, with other heights."""

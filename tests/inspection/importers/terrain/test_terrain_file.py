@@ -82,6 +82,7 @@ def test_hostile_archives_are_refused(tmp_path: Path) -> None:
     assert "3601 posts" in refusal(tmp_path / "N46E009.hgt.gz")
 
 
+@pytest.mark.long
 def test_a_zip_that_is_more_than_a_worker_takes_is_refused_before_it_is_unpacked(tmp_path: Path) -> None:
     tile = b"\0" * (3601 * 3601 * 2)
     path = zipped(tmp_path / "many.zip", **{f"N46E{degrees:03}.hgt": tile for degrees in range(21)})

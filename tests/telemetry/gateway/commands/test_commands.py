@@ -204,6 +204,7 @@ def test_a_list_that_nobody_approved_is_not_resumed(uav, mission, tmp_path):
     assert vehicle.custom_mode == 17
 
 
+@pytest.mark.long
 def test_a_mission_is_taken_off_once_the_vehicle_may_be_written_to(uav, mission, tmp_path, monkeypatch):
     monkeypatch.setattr(delivery, "CLEAR_AGAIN_IN_S", 0.2)
     vehicle = ArduPilot()

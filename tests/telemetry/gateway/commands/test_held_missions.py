@@ -51,6 +51,7 @@ def applied(command: UavCommand) -> bool:
     return UavCommand.objects.filter(pk=command.pk, state=CommandState.APPLIED).exists()
 
 
+@pytest.mark.long
 def test_no_uav_waits_while_a_mission_is_held(settings, tmp_path):
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
     author, uav, other = a_user(), unsigned_uav(7, is_simulated=True), unsigned_uav(8, is_simulated=True)

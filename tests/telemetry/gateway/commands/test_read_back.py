@@ -74,6 +74,7 @@ def reboot(flying: Any) -> None:
     flying.booted_s = time.monotonic()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("happens", "doubt"), [(other_station, Doubt.OTHER_STATION), (reboot, Doubt.REBOOTED)])
 def test_what_may_have_changed_since_is_doubted_until_it_is_read_back(happens, doubt, uav, mission, tmp_path):
     with gateway_at_work(tmp_path) as gateway, flyer(Px4(), gateway, booted_s=time.monotonic() - 100.0) as flying:
@@ -102,6 +103,7 @@ class SlowRadio(Px4):
         return super()._mission_request_int(message, now_s)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("read_back_s", "state"), [(30.0, CommandState.APPLIED), (0.5, CommandState.EXPIRED)])
 def test_a_start_waits_for_the_reading_as_long_as_that_goes_on_and_is_allowed(read_back_s, state, uav, mission, settings, tmp_path):
     settings.COMMAND_RULES = CommandLifetimes(motion_s=MOTION_S, read_back_s=read_back_s)
@@ -125,6 +127,7 @@ class Homeless(Flyer):
         return super()._reports(now_s)[:1]
 
 
+@pytest.mark.long
 def test_a_start_that_waited_for_home_in_vain_ends_with_that_reason(uav, mission, settings, tmp_path):
     settings.COMMAND_RULES = CommandLifetimes(motion_s=1.5)
     with gateway_at_work(tmp_path) as gateway, Homeless(Px4(), port_of(gateway), at=UAV_AT, altitude_amsl_m=101.0):
@@ -144,6 +147,7 @@ class Unreadable(Px4):
         return [] if self.is_unreadable else super()._mission_request_list(message, now_s)
 
 
+@pytest.mark.long
 def test_a_start_that_waited_for_the_reading_in_vain_ends_with_that_reason(uav, mission, settings, tmp_path):
     settings.COMMAND_RULES = CommandLifetimes(motion_s=5.0)
     vehicle = Unreadable()
@@ -156,6 +160,7 @@ def test_a_start_that_waited_for_the_reading_in_vain_ends_with_that_reason(uav, 
     assert start.outcome == "It was not sent in time. Nothing was sent: the mission on the vehicle could not be read."
 
 
+@pytest.mark.long
 def test_a_start_does_not_wait_for_a_vehicle_that_falls_silent(uav, mission, settings, tmp_path):
     settings.COMMAND_RULES = CommandLifetimes(motion_s=1.5, read_back_s=60.0)
     with gateway_at_work(tmp_path) as gateway, flyer(Px4(), gateway) as flying:

@@ -140,6 +140,7 @@ def test_what_one_uav_leaves_is_flown_by_the_other(autopilot_type, mission, tmp_
     assert set(mission.targets.filter(sequence__in=lost).values_list("state", flat=True)) == {TargetState.SKIPPED}
 
 
+@pytest.mark.long
 def test_a_uav_that_cannot_be_given_its_route_stays_held_and_it_is_said(mission, tmp_path):
     vehicles = [ArduPilot(system=7), ArduPilot(system=8)]
     with (

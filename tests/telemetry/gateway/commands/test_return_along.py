@@ -92,6 +92,7 @@ def test_a_zone_on_the_rest_of_its_way_is_said_and_nothing_is_sent(autopilot_typ
     assert "does not return along its route" in alert_words(alert.message, alert.values)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
 def test_a_height_that_cannot_be_set_is_told_at_once_and_the_return_as_it_is_ends_it(autopilot_type, uav, mission, tmp_path):
     name = HEIGHT[autopilot_type]

@@ -27,6 +27,7 @@ def mission(uav, settings, tmp_path) -> Mission:
     return approved(a_user(), [uav], world().towers[:2])[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
 def test_the_height_of_its_return_is_read_and_read_anew(autopilot_type, uav, mission, tmp_path):
     first, later, height_m = REPORTED[autopilot_type]

@@ -57,6 +57,7 @@ def test_a_mission_with_a_fence_and_a_look_is_flown_to_its_end_by_an_arducopter(
     assert winds == {None}, "no calm that nobody measured"
 
 
+@pytest.mark.long
 def test_a_gateway_that_is_replaced_before_the_touch_down_knows_that_it_was_flown(uav, mission, tmp_path):
     vehicle = ArduPilot()
     with gateway_at_work(tmp_path, name="one") as gateway, flyer(vehicle, gateway):
@@ -71,6 +72,7 @@ def test_a_gateway_that_is_replaced_before_the_touch_down_knows_that_it_was_flow
         wait_for(lambda: mission.routes.get().flights_flown == 1, "the flight's end")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("vehicle_type", "number", "mode", "kind"), [(PLANE, 5, "FLY_BY_WIRE_A", "plane"), (ROVER, 10, "AUTO", "rover")])
 def test_another_kind_of_vehicle_is_shown_and_takes_neither_mission_nor_command(vehicle_type, number, mode, kind, uav, mission, tmp_path):
     vehicle = ArduPilot(vehicle_type=vehicle_type, custom_mode=number)
