@@ -32,6 +32,7 @@ urlpatterns = [
     path("assets/within", picking.AssetsWithin.as_view(), name="api-assets-within"),
     path("assets/stretch", picking.StretchAlongLines.as_view(), name="api-stretch"),
     path("assets/<int:asset_id>/supports", picking.LineSupports.as_view(), name="api-line-supports"),
+    path("assets/<int:asset_id>/parts", picking.LineParts.as_view(), name="api-line-parts"),
     path("assets/<int:asset_id>/bridges", picking.RailwayBridgesView.as_view(), name="api-railway-bridges"),
     path("zones", zones.ZoneList.as_view(), name="api-zones"),
     path("zones/summary", zone_register.ZoneCountsView.as_view(), name="api-zone-summary"),

@@ -1,6 +1,6 @@
 """Reads of map data for views, commands and other apps."""
 
-from inspection.selectors.asset_names import asset_detail, asset_label, voltage_text
+from inspection.selectors.asset_names import asset_detail, asset_label, part_label, voltage_text
 from inspection.selectors.assets import (
     UNREAD_OF_A_LINE,
     Box,
@@ -38,6 +38,7 @@ __all__ = [
     "ground_summary",
     "has_terrain",
     "map_data",
+    "part_label",
     "references_of",
     "terrain_dataset_version",
     "tile_of_version",

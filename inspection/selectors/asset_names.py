@@ -140,6 +140,14 @@ def asset_label(asset: Asset) -> str:
     return f"{noun} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{noun} {asset.pk}"
 
 
+def part_label(asset: Asset, from_m: float, to_m: float) -> str:
+    """Return the label of a part of a line or railway, along which it lies between these metres: "E402, km 9.8–10.8".
+
+    Written alike in all languages: pages find the line's own label before the ", km".
+    """
+    return f"{asset_label(asset)}, km {from_m / 1_000.0:.1f}–{to_m / 1_000.0:.1f}"
+
+
 def asset_detail(asset: Asset) -> str:
     """Return what the label omits: "138 kV AEP" of a support's line or of a line; what a bridge carries. It may be empty.
 

@@ -8,15 +8,18 @@ from typing import Any
 
 import numpy as np
 import shapely
-from django.contrib.gis.geos import GEOSGeometry
+from django.contrib.gis.geos import GEOSGeometry, LineString
 from django.contrib.postgres.fields import ArrayField
 from django.db import connection
 from django.db.models import F, Func, Q, QuerySet, TextField, Value
 from django.db.models.functions import Lower
 
+from inspection.geodesy import LonLat
+from inspection.geodesy.stretches import FloatArray, LinePart, nearest_on_line, part_between, parts_of_line
 from inspection.models import Asset, AssetKind
-from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order
-from inspection.selectors.asset_names import assets_with_made_names, made_name
+from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
+from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order, vertices_at_supports
+from inspection.selectors.asset_names import asset_label, assets_with_made_names, made_name, part_label
 from inspection.selectors.ground_data import supports_and_lines
 
 Box = tuple[float, float, float, float]
@@ -43,6 +46,10 @@ class TooTangled(Exception):
 
 class NoWayAlongLines(Exception):
     """Raised when no line leads from one support to the other."""
+
+
+class NotOneLine(Exception):
+    """Raised for a line or railway that is not drawn as one line, so that it cannot be flown along."""
 
 
 def plain_ref(text: str) -> str:
@@ -137,12 +144,42 @@ class RailwayBridges:
     bridges: list[int]
 
 
-def supports_of_line(line: Asset) -> tuple[int, ...]:
-    """Return the primary keys of the line's supports in its direction."""
+def _supports_and_line(line: Asset) -> tuple[InfrastructurePlaces, InfrastructureWays]:
     west, south, east, north = line.geometry.extent
     near = (west - BESIDE_DEG, south - BESIDE_DEG, east + BESIDE_DEG, north + BESIDE_DEG)
-    supports, ways = supports_and_lines(near, line=line.pk)
-    return supports_in_order(supports, ways)
+    return supports_and_lines(near, line=line.pk)
+
+
+def supports_of_line(line: Asset) -> tuple[int, ...]:
+    """Return the primary keys of the line's supports in its direction."""
+    return supports_in_order(*_supports_and_line(line))
+
+
+def parts_of_asset(asset: Asset, part_m: float, ends: Sequence[LonLat] | None = None) -> list[LinePart]:
+    """Return the parts of a line or railway, or of its stretch between the places nearest to `ends`; a line is cut at its supports.
+
+    Raises NotOneLine.
+    """
+    course = _course(asset)
+    at = vertices_at_supports(*_supports_and_line(asset)) if asset.kind == AssetKind.LINE else ()
+    stretch = None if ends is None else (nearest_on_line(course, ends[0]), nearest_on_line(course, ends[1]))
+    return parts_of_line(course, part_m, ends=stretch, at=at)
+
+
+def label_between(line: Asset, start: LonLat, end: LonLat) -> str:
+    """Return the label of a line's stretch between two places, or the line's own where it is not one line."""
+    try:
+        course = _course(line)
+    except NotOneLine:
+        return asset_label(line)
+    part = part_between(course, nearest_on_line(course, start), nearest_on_line(course, end))
+    return part_label(line, part.from_m, part.to_m)
+
+
+def _course(line: Asset) -> FloatArray:
+    if not isinstance(line.geometry, LineString):
+        raise NotOneLine
+    return np.array(line.geometry.coords, dtype=np.float64)[:, :2]
 
 
 def supports_between(line: Asset, start: int, end: int) -> tuple[int, ...]:
@@ -227,6 +264,7 @@ __all__ = [
     "MAX_IN_AN_AREA",
     "NoWayAlongLines",
     "NotOnTheLine",
+    "NotOneLine",
     "RailwayBridges",
     "StretchPart",
     "TooTangled",
@@ -234,6 +272,8 @@ __all__ = [
     "assets_called",
     "assets_in_area",
     "bridges_of_railway",
+    "label_between",
+    "parts_of_asset",
     "plain_ref",
     "stretch_along_lines",
     "supports_between",

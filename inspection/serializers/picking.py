@@ -76,6 +76,7 @@ class WithinOutputSerializer(serializers.Serializer):
 
 class StretchPartSerializer(serializers.Serializer):
     line = PickedAssetSerializer()
+    label: Declared = serializers.CharField(help_text='the line and where on it the part lies, such as "E402, km 9.8–10.8"')
     stretch = serializers.ListField(
         child=serializers.ListField(child=serializers.FloatField()), min_length=2, max_length=2, help_text="where it begins and ends"
     )
@@ -88,6 +89,13 @@ class SupportsOutputSerializer(serializers.Serializer):
     supports = PickedAssetSerializer(many=True)
     parts = StretchPartSerializer(many=True, help_text="empty where whole lines were asked for")
     length_m = serializers.FloatField(allow_null=True)
+
+
+class LinePartsOutputSerializer(serializers.Serializer):
+    """Parts that several UAVs can share; each is a target with `asset` and `stretch`."""
+
+    parts = StretchPartSerializer(many=True, help_text="in the line's direction; one where the line cannot be divided")
+    length_m = serializers.FloatField()
 
 
 class BridgesOutputSerializer(serializers.Serializer):

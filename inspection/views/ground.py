@@ -24,7 +24,7 @@ from inspection.selectors.scene import RECIPE, UnfitBox, check_box, scene_in
 from inspection.serializers.edits import GeometryCheckResultSerializer, GeometryCheckSerializer
 from inspection.serializers.scene import SceneSerializer, scene_json
 from inspection.services.imports.geometry import area_m2, asset_shape, length_m, zone_shape
-from inspection.views.parameters import BOX_TEXT, box_of, invalid
+from inspection.views.parameters import TWO_LON_LATS, box_of, invalid
 from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer
 
@@ -41,7 +41,7 @@ class SceneOfBox(APIView):
         description="Terrain, supports with arms, spans with sag, railways, bridges and zones with their limits, in WGS84 and metres. "
         "Sides of the box are between 50 m and 40 km; what goes beyond the limits of number is counted in left_out. "
         "The ETag changes with the ground.",
-        parameters=[OpenApiParameter("bbox", BOX_TEXT, required=True, description="west,south,east,north in degrees, west < east")],
+        parameters=[OpenApiParameter("bbox", TWO_LON_LATS, required=True, description="west,south,east,north in degrees, west < east")],
         responses={200: SceneSerializer, 304: OpenApiResponse(description="The ground has not changed.")},
     )
     def get(self, request: Request) -> HttpResponse:

@@ -6,6 +6,7 @@ from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.request import Request
 
+from inspection.geodesy import LonLat
 from inspection.models import AssetKind
 from inspection.selectors import Box
 from workspace.api.errors import ApiProblem
@@ -13,8 +14,8 @@ from workspace.api.errors import ApiProblem
 MAX_TEXT_LENGTH = 100
 _LON, _LAT = r"-?(180|(1[0-7][0-9]|[0-9]{1,2})(\.[0-9]+)?)", r"-?(90|[0-8]?[0-9](\.[0-9]+)?)"
 LON_LAT = {"type": "string", "pattern": f"^{_LON},{_LAT}$"}
-BOX_TEXT = {"type": "string", "pattern": f"^{_LON},{_LAT},{_LON},{_LAT}$"}
-BOX = OpenApiParameter("bbox", BOX_TEXT, description="west,south,east,north in degrees; west > east crosses the 180th meridian")
+TWO_LON_LATS = {"type": "string", "pattern": f"^{_LON},{_LAT},{_LON},{_LAT}$"}
+BOX = OpenApiParameter("bbox", TWO_LON_LATS, description="west,south,east,north in degrees; west > east crosses the 180th meridian")
 
 
 def invalid(parameter: str, message: str) -> ApiProblem:
@@ -34,6 +35,21 @@ def box_of(request: Request) -> Box | None:
     if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south <= north <= 90):
         raise invalid("bbox", _("Longitudes go from -180 to 180, latitudes from -90 to 90, and south is not above north."))
     return west, south, east, north
+
+
+def positions_of(request: Request, parameter: str, count: int) -> list[LonLat]:
+    """Return the positions of a parameter, each as lon,lat. Raises ApiProblem 400."""
+    try:
+        numbers = [float(part) for part in request.query_params.get(parameter, "").split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 2 * count:
+        asked = ",".join(["lon,lat"] * count)
+        raise invalid(parameter, _("%(count)s numbers are needed: %(asked)s.") % {"count": 2 * count, "asked": asked})
+    found = [LonLat(*numbers[place : place + 2]) for place in range(0, 2 * count, 2)]
+    if not all(-180 <= lon <= 180 and -90 <= lat <= 90 for lon, lat in found):
+        raise invalid(parameter, _("Longitude comes first, from -180 to 180, then latitude, from -90 to 90."))
+    return found
 
 
 def kinds_of(request: Request) -> list[AssetKind]:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import islice
+from typing import Any
 
 from django.http import Http404
 from django.utils.translation import gettext as _
@@ -10,11 +11,13 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
-from inspection.selectors import picking
+from inspection.selectors import part_label, picking
 from inspection.serializers.assets import FIELDS_OF_AN_ASSET
 from inspection.serializers.picking import (
     BridgesOutputSerializer,
+    LinePartsOutputSerializer,
     LookupInputSerializer,
     LookupOutputSerializer,
     SupportsOutputSerializer,
@@ -23,19 +26,21 @@ from inspection.serializers.picking import (
     picked_asset,
     picked_assets,
 )
-from inspection.views.parameters import invalid
+from inspection.views.parameters import TWO_LON_LATS, invalid, positions_of
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import asked_choice, asked_flag
 from workspace.api.whole_numbers import WholeNumber
 from workspace.models import Role
 
 MAX_CHOICES = 20
+DEFAULT_PART_M = 1_000
+PART_M = WholeNumber("part_m", f"about how long a part is, metres; {DEFAULT_PART_M} by default", minimum=100, maximum=1_000_000)
 FROM = WholeNumber("from", "id of the support where it begins")
 TO = WholeNumber("to", "id of the support where it ends")
 
 
-def _asset(asset_id: int, kind: AssetKind) -> Asset:
-    asset = Asset.objects.filter(pk=asset_id, kind=kind, vanished_at=None).first()
+def _asset(asset_id: int, *kinds: AssetKind) -> Asset:
+    asset = Asset.objects.select_related("line").filter(pk=asset_id, kind__in=kinds, vanished_at=None).first()
     if asset is None:
         raise Http404
     return asset
@@ -145,13 +150,39 @@ class StretchAlongLines(APIView):
             stretch = picking.stretch_along_lines(start, end)
         except picking.NoWayAlongLines as error:
             raise ApiProblem(404, "no_way_along_lines", _("No line leads from one tower to the other.")) from error
-        lines = {row["id"]: row for row in picked_assets(part.line for part in stretch.parts)}
+        lines = Asset.objects.select_related("line").in_bulk({part.line for part in stretch.parts})
         parts = [
-            {"line": lines[part.line], "stretch": [list(part.start), list(part.end)], "length_m": part.length_m}
+            _part_json(lines[part.line], part.start, part.end, part.length_m, picking.label_between(lines[part.line], part.start, part.end))
             for part in stretch.parts
             if part.line in lines
         ]
         return Response({"supports": picked_assets(stretch.supports), "parts": parts, "length_m": stretch.length_m})
+
+
+def _part_json(line: Asset, start: LonLat, end: LonLat, length_m: float, label: str) -> dict[str, Any]:
+    return {"line": picked_asset(line), "label": label, "stretch": [list(start), list(end)], "length_m": length_m}
+
+
+class LineParts(APIView):
+    @extend_schema(
+        operation_id="list_line_parts",
+        summary="A line or railway in parts that several UAVs can share",
+        parameters=[
+            PART_M.documented,
+            OpenApiParameter("ends", TWO_LON_LATS, description="lon,lat,lon,lat: only the stretch between the places nearest to these"),
+        ],
+        responses=LinePartsOutputSerializer,
+    )
+    def get(self, request: Request, asset_id: int) -> Response:
+        line = _asset(asset_id, AssetKind.LINE, AssetKind.RAILWAY)
+        part_m = PART_M.asked(request) or DEFAULT_PART_M
+        ends = tuple(positions_of(request, "ends", 2)) if request.query_params.get("ends") else None
+        try:
+            found = picking.parts_of_asset(line, part_m, ends)
+        except picking.NotOneLine as error:
+            raise ApiProblem(400, "not_one_line", _("This asset is not drawn as one line, so it cannot be flown along.")) from error
+        parts = [_part_json(line, part.start, part.end, part.length_m, part_label(line, part.from_m, part.to_m)) for part in found]
+        return Response({"parts": parts, "length_m": sum(part.length_m for part in found)})
 
 
 class RailwayBridgesView(APIView):

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from django.http import Http404
-from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -29,7 +28,7 @@ from inspection.serializers.terrain import (
 )
 from inspection.services.imports.terrain import remove_terrain
 from inspection.terrain.heights import amsl_m, counted_from, samples_along
-from inspection.views.parameters import LON_LAT, invalid
+from inspection.views.parameters import LON_LAT, positions_of
 from workspace.api.permissions import CURATORS
 from workspace.api.signed_in import SignedInRequest
 from workspace.models import Role
@@ -63,13 +62,8 @@ class GroundHeight(APIView):
         responses=GroundHeightSerializer,
     )
     def get(self, request: Request) -> Response:
-        try:
-            lon, lat = (float(part) for part in request.query_params.get("position", "").split(","))
-        except ValueError as error:
-            raise invalid("position", _("Two numbers are needed: lon,lat.")) from error
-        if not (-180 <= lon <= 180 and -90 <= lat <= 90):
-            raise invalid("position", _("Longitude comes first, from -180 to 180, then latitude, from -90 to 90."))
-        truth = ground_truth(np.array([[lon, lat]]))
+        [position] = positions_of(request, "position", 1)
+        truth = ground_truth(np.array([position]))
         model = model_of(int(truth.imports[0]))
         return Response(
             {

@@ -10,15 +10,16 @@ from django.utils.translation import gettext as _
 from django.utils.translation import override
 
 from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.stretches import line_end, nearest_on_line, stretch_between
 from inspection.models import Asset, AssetKind
 from inspection.selectors import asset_label
+from inspection.selectors.picking import label_between
 from inspection.selectors.planning import PointAsset, planning_read
 from operation.reasons import Reason
 from planning.context import ResolvedTarget
 from planning.request import InvalidRequest, TargetRequest
 from planning.task import Task, default_task
 from planning.trajectory.heights import FloatArray, asset_height_m
-from planning.trajectory.stretches import PlaceOnLine, nearest_on_line, stretch_between
 from workspace.locale_negotiation import number_text
 
 NEAR_ASSET_M = 500.0  # a picked point farther from its asset is an error
@@ -104,6 +105,7 @@ def position_label(position: LonLat) -> str:
 
 def _place_on(asset: Asset, index: int, target: TargetRequest) -> NamedTarget:
     course = _course(asset, index, target)
+    called = partial(asset_label, asset) if target.stretch is None else partial(label_between, asset, *target.stretch)
     return NamedTarget(
         target=index,
         course=course,
@@ -111,7 +113,7 @@ def _place_on(asset: Asset, index: int, target: TargetRequest) -> NamedTarget:
         height_m=asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v),
         asset=asset.pk,
         kind=asset.kind,
-        called=partial(asset_label, asset),
+        called=called,
     )
 
 
@@ -140,7 +142,7 @@ def _course_on_line(asset: Asset, index: int, target: TargetRequest) -> tuple[Lo
         _refuse_far(f"targets.{index}.position", place.distance_m)
         return (place.position,)
     if target.stretch is None:
-        return stretch_between(line, _end(line, 0), _end(line, -1))
+        return stretch_between(line, line_end(line, 0), line_end(line, -1))
     ends = []
     for number, position in enumerate(target.stretch):
         ends.append(nearest_on_line(line, position))
@@ -155,11 +157,6 @@ def _line(asset: Asset, index: int) -> FloatArray:
     if not isinstance(asset.geometry, LineString):
         raise InvalidRequest({f"targets.{index}.asset": _("This asset is not drawn as one line, so it cannot be flown along.")})
     return np.array(asset.geometry.coords, dtype=np.float64)[:, :2]
-
-
-def _end(line: FloatArray, which: int) -> PlaceOnLine:
-    at = LonLat(float(line[which][0]), float(line[which][1]))
-    return PlaceOnLine(0, 0.0, at, 0.0) if which == 0 else PlaceOnLine(len(line) - 2, 1.0, at, 0.0)
 
 
 def _on_area(geometry: GEOSGeometry, index: int, position: LonLat) -> LonLat:

@@ -3181,6 +3181,13 @@ export interface components {
             type: components["schemas"]["LineTypeEnum"];
             coordinates: number[][];
         };
+        /** @description Parts that several UAVs can share; each is a target with `asset` and `stretch`. */
+        LinePartsOutput: {
+            /** @description in the line's direction; one where the line cannot be divided */
+            parts: components["schemas"]["StretchPart"][];
+            /** Format: double */
+            length_m: number;
+        };
         /**
          * @description * `LineString` - LineString
          * @enum {string}
@@ -7498,6 +7505,8 @@ export interface components {
         };
         StretchPart: {
             line: components["schemas"]["PickedAsset"];
+            /** @description the line and where on it the part lies, such as "E402, km 9.8–10.8" */
+            label: string;
             /** @description where it begins and ends */
             stretch: number[][];
             /** Format: double */
@@ -9624,6 +9633,7 @@ export type Limit = components['schemas']['Limit'];
 export type LimitEnum = components['schemas']['LimitEnum'];
 export type LimitInputRequest = components['schemas']['LimitInputRequest'];
 export type Line = components['schemas']['Line'];
+export type LinePartsOutput = components['schemas']['LinePartsOutput'];
 export type LineTypeEnum = components['schemas']['LineTypeEnum'];
 export type LinkCaptureRequest = components['schemas']['LinkCaptureRequest'];
 export type LinkCapturesRequest = components['schemas']['LinkCapturesRequest'];

@@ -17,6 +17,7 @@ def test_a_new_password_is_argon2id_with_the_stated_cost() -> None:
     assert not identify_hasher(hashed).must_update(hashed)
 
 
+@pytest.mark.long
 def test_an_older_password_lets_in_and_is_made_anew() -> None:
     user = a_user()
     user.password = make_password(PASSWORD, hasher="pbkdf2_sha256")

@@ -307,6 +307,7 @@ def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
     expect(page.get_by_role("link", name="Lapwing")).to_be_visible()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("theme", "size"), [("dark", (390, 844)), pytest.param("light", (1440, 900), marks=pytest.mark.long)])
 def test_axe_finds_nothing_serious_in_details_and_forms(visitor: Visitor, theme: str, size: tuple[int, int], picture: Picture) -> None:
     page = visitor.signs_in("opal", theme=theme, size=size)

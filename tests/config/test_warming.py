@@ -60,6 +60,7 @@ def test_what_fails_keeps_nobody_out(caplog: pytest.LogCaptureFixture) -> None:
     assert "not warmed up" in caplog.text
 
 
+@pytest.mark.long
 def test_the_application_is_there_before_it_is_warm() -> None:
     """Where it were not, this would wait for ever: nobody sets the event before."""
     environment = {**os.environ, "DJANGO_SETTINGS_MODULE": "config.settings", "SPANWISE_VAR": str(settings.STATE_DIR)}

@@ -277,6 +277,45 @@ def test_where_no_line_leads_there_is_no_stretch(client: Client) -> None:
     assert client.get(f"/api/v1/assets/stretch?from={near[0].pk}&to={near[0].pk}").status_code == 400
 
 
+# --- parts that UAVs share ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_line_comes_in_parts_from_tower_to_tower_that_are_targets_of_a_mission(client: Client) -> None:
+    """Ten spans of 625 m; between two of the towers the line has a vertex without one."""
+    masts = row_of_towers(*(10.0 + 0.01 * number for number in range(11)))
+    course = [mast.centre.coords for mast in masts]
+    way = line(*course[:4], (10.032, 56.0), *course[4:], ref="E402")
+    answer = client.get(f"/api/v1/assets/{way.pk}/parts").json()
+    assert len(answer["parts"]) == 6
+    assert [part["line"]["id"] for part in answer["parts"]] == [way.pk] * 6
+    assert [part["label"] for part in answer["parts"]][:2] == ["E402, km 0.0–1.2", "E402, km 1.2–1.9"]
+    assert {end[0] for part in answer["parts"] for end in part["stretch"]} <= {lon for lon, _ in course}
+    assert answer["length_m"] == pytest.approx(sum(part["length_m"] for part in answer["parts"])) == pytest.approx(6_240, rel=0.01)
+
+
+def test_only_the_stretch_between_two_places_is_divided_if_it_is_asked_for(client: Client) -> None:
+    way = line_over(row_of_towers(*(10.0 + 0.01 * number for number in range(11))))
+    parts = client.get(f"/api/v1/assets/{way.pk}/parts?ends=10.08,56.0,10.02,56.0&part_m=1250").json()["parts"]
+    assert [part["stretch"] for part in parts] == [
+        [[10.02, 56.0], [10.04, 56.0]], [[10.04, 56.0], [10.06, 56.0]], [[10.06, 56.0], [10.08, 56.0]],
+    ]  # fmt: skip
+
+
+def test_a_railway_is_divided_at_its_vertices(client: Client) -> None:
+    track = railway(*((10.0 + 0.01 * number, 56.0) for number in range(11)))
+    assert len(client.get(f"/api/v1/assets/{track.pk}/parts").json()["parts"]) == 6
+
+
+@pytest.mark.parametrize("query", ["part_m=0", "part_m=x", "ends=10", "ends=10,56,11", "ends=56.0,10.0,nan,1", "ends=10,56,10,956"])
+def test_parts_that_cannot_be_are_refused(client: Client, query: str) -> None:
+    answer = client.get(f"/api/v1/assets/{line().pk}/parts?{query}")
+    assert (answer.status_code, answer.json()["error"]["code"]) == (400, "invalid")
+
+
+def test_a_tower_has_no_parts(client: Client) -> None:
+    assert client.get(f"/api/v1/assets/{tower().pk}/parts").status_code == 404
+
+
 # --- bridges of a railway ----------------------------------------------------------------------------------------------------------
 
 

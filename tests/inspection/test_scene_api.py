@@ -47,6 +47,7 @@ def by_id(things: list[dict[str, Any]]) -> dict[int, dict[str, Any]]:
     return {thing["id"]: thing for thing in things}
 
 
+@pytest.mark.long
 def test_the_demo_region_in_3d_is_that_of_rows_terrain_and_planners(client: Client, tmp_path: Path) -> None:
     """Every support and wire that planners know, where and as high as they count it; wires hang from slots that are not higher."""
     call_command("make_demo_region", tmp_path, verbosity=0)

@@ -89,6 +89,7 @@ def test_a_target_where_the_uav_stands_is_reached_at_once():
     assert plan["cost_m"] == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.long
 def test_more_targets_than_can_be_proven_are_all_visited():
     plan = planned({"uavs": [[55.049, 10.001]], "targets": list(range(14))})
     assert sorted(plan["routes"][0]) == list(range(14))

@@ -77,6 +77,7 @@ def test_rehearsals_have_a_queue_of_their_own() -> None:
     assert queue_of({}, "simulation.tasks.rehearse_mission")["queue"].name == "simulation"
 
 
+@pytest.mark.long
 def test_step_by_step_one_is_flown_one_is_in_flight_and_one_is_planned(job: Job) -> None:
     work_until(job, Simulation.objects.exists)
     for name in (REAL_TIME, FAST):

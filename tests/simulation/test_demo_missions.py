@@ -96,6 +96,7 @@ def test_two_who_ask_get_one_job(administrator: User) -> None:
     assert Job.objects.filter(task=MAKE_DEMO_MISSIONS).count() == 1
 
 
+@pytest.mark.long
 def test_only_administrators_make_and_remove_them(administrator: User, client: Client) -> None:
     operator = client_of(a_user(Role.OPERATOR))
     assert operator.get("/api/v1/demo-data").json()["can_be_made"] is True

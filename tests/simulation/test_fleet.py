@@ -224,6 +224,7 @@ def test_the_command_says_nothing_of_keys(tmp_path):
     assert "abcdef" not in str(error.value)
 
 
+@pytest.mark.long
 def test_the_command_flies_without_a_database_until_it_is_told_to_stop(tmp_path):
     keys = tmp_path / "keys.json"
     keys.write_text(json.dumps({"12": KEY.hex()}))

@@ -36,6 +36,7 @@ from simulation.models import Rehearsal
 from simulation.vehicle_models import SimulatedVehicle, Simulation
 from telemetry.models import Alert, AlertLevel, FlightLog
 from tests.accounts.users import a_user, client_of
+from tests.cases import long
 from tests.missions.commands.outbox import a_uav, give
 from tests.missions.worlds import UAV_AT
 from tests.workspace.sessions.test_roles import SAFE, stand_in
@@ -143,7 +144,7 @@ def test_what_each_address_names_is_in_the_table() -> None:
     assert names == set(rows_of(Organisation.objects.get(pk=1))) | SHARED | PLACES_WITHIN
 
 
-@pytest.mark.parametrize("role", Role)
+@pytest.mark.parametrize("role", [Role.OPERATOR, Role.VIEWER, *long(Role.CURATOR, Role.ADMINISTRATOR)])
 def test_rows_of_another_organisation_are_answered_like_rows_that_are_nowhere(role: Role) -> None:
     home, elsewhere = Organisation.objects.create(name="Home"), Organisation.objects.create(name="Elsewhere")
     rows = rows_of(home)

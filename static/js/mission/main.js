@@ -165,7 +165,7 @@ const finder = mountFinder({
   canPlan: page.canPlan,
   box: () => map.box(),
   show: (feature) => map.show(targetOfFeature(feature)),
-  add: (feature) => actions.addTargets([targetOfFeature(feature)]),
+  add: (feature) => void actions.addWhole(targetOfFeature(feature)),
   addAll: (features) =>
     actions.addMany(features.map(targetOfFeature), (added) => t("{added} from the search.", { added })),
   things: () =>

@@ -3,10 +3,10 @@
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./options/flight_options.js";
-import { isUsualTask, taskOf } from "./tasks.js";
+import { isUsualTask, isWhole, taskOf } from "./tasks.js";
 
 /** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Wishes } from "./types.d.ts" */
-/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, UavInputRequest } from "../api_types.d.ts" */
+/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, StretchPart, SelectionTarget, TargetInputRequest, UavInputRequest } from "../api_types.d.ts" */
 
 /**
  * Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last
@@ -79,6 +79,59 @@ export function targetOfRow({ id, kind, centre, ...properties }) {
 }
 
 /**
+ * A part of a line or railway as a target. @param {StretchPart} part @returns {PickedTarget}
+ */
+export function targetOfPart({ line, label, stretch, length_m }) {
+  const [[west, south], [east, north]] = stretch;
+  const centre = [(west + east) / 2, (south + north) / 2];
+  return targetOf({ id: line.id, kind: line.kind, properties: { ...line, label, length_m }, centre, stretch });
+}
+
+/**
+ * The label of the line that a part belongs to: the server calls parts "E402, km 9.8–10.8".
+ *
+ * @param {string} label
+ */
+export const lineOfPart = (label) => label.replace(/, km [\d.]+–[\d.]+$/, "");
+
+/** Whether it is a line or railway from end to end. @param {Pick<PickedTarget, "kind" | "position" | "stretch">} target */
+export const isWholeLine = (target) => isWhole(target) && !target.stretch;
+
+/**
+ * The selection with parts in place of a target; they get its task and wishes.
+ *
+ * @param {MissionSelection} selection
+ * @param {string} key
+ * @param {PickedTarget[]} parts
+ * @returns {MissionSelection}
+ */
+export function withParts(selection, key, parts) {
+  const targets = selection.targets.flatMap((target) =>
+    target.key === key ? parts.map((part) => ({ ...part, task: target.task, ...wishesOf(target) })) : [target],
+  );
+  return withTargets({ ...selection, targets: [] }, targets);
+}
+
+/**
+ * The selection with the whole line in place of all of its parts; it gets the task and the wishes of the first.
+ *
+ * @param {MissionSelection} selection
+ * @param {number} line
+ * @returns {MissionSelection}
+ */
+export function withWholeLine(selection, line) {
+  const isPart = (/** @type {PickedTarget} */ target) => target.asset === line && target.stretch !== null;
+  const first = selection.targets.find(isPart);
+  if (!first) return selection;
+  const place = { ...first, stretch: null };
+  const whole = { ...place, key: keyOf(place), label: lineOfPart(first.label), detail: extentOf(first.kind) ?? "" };
+  const others = selection.targets.filter(
+    (target) => target === first || (!isPart(target) && target.key !== whole.key),
+  );
+  return { ...selection, targets: others.map((target) => (target === first ? whole : target)) };
+}
+
+/**
  * The extent picked of a line or railway. OpenStreetMap splits railways into sections: one of them is not the whole track.
  *
  * @param {string | null} kind
@@ -89,7 +142,7 @@ export function targetOfRow({ id, kind, centre, ...properties }) {
 export function extentOf(kind, length_m, position = null, stretch = null) {
   const whole = kind === "line" ? t("whole line") : kind === "railway" ? t("section") : undefined;
   if (!whole || position) return whole && t("one point");
-  const words = stretch ? t("tower to tower") : whole;
+  const words = !stretch ? whole : kind === "line" ? t("tower to tower") : t("part");
   return length_m ? `${words}, ${lengthText(length_m)}` : words;
 }
 

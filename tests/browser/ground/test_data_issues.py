@@ -126,6 +126,7 @@ def test_who_is_no_curator_sees_gaps_and_cannot_mend_them(visitor: Visitor) -> N
     expect(page.locator(".issue-acts button")).to_have_count(0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("theme", ["light", pytest.param("dark", marks=pytest.mark.long)])
 @pytest.mark.parametrize(("width", "height", "suffix"), [(1440, 900, ""), (390, 844, "-phone")])
 def test_the_chosen_issue_stands_in_sight(

@@ -58,6 +58,7 @@ def is_kept_here(page: Page) -> None:
     page.wait_for_function("() => Object.keys(localStorage).some((key) => key.startsWith('spanwise.draft.'))")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", ["top", pytest.param("copy", marks=pytest.mark.long)])
 def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) -> None:
     mine = visitor.signs_in("opal")

@@ -122,6 +122,7 @@ def test_an_overview_takes_the_whole_tower_from_four_sides_without_a_gsd(client:
         assert photo["pitch_deg"] <= 0.0
 
 
+@pytest.mark.long
 def test_wires_are_photographed_up_to_the_middle_of_each_span_however_long_it_is(client: Client) -> None:
     towers = [ground.tower((10.1 + lon, 56.1), height_m=30.0) for lon in (0.0, 0.003, 0.0122)]  # 186 m and 573 m apart
     power_line(towers)

@@ -144,6 +144,7 @@ def test_an_overview_is_flown_as_four_photos_and_kept_apart_from_every_part(here
     assert sum(waypoint.task is not None and waypoint.task.view is not None for waypoint in frozen.waypoints) == 4
 
 
+@pytest.mark.long
 def test_wires_of_neighbouring_towers_are_photographed_from_both_sides(here: World, client: Client) -> None:
     uav = tern()
     UavType.objects.update(cameras=[camera_to_json(WIRES_CAMERA)])
@@ -174,6 +175,7 @@ def test_without_terrain_nobody_flies_beside_wires(client: Client) -> None:
     assert unassigned(made(client, body(photos_of(world(height_m=30.0).towers[2])))) == "no_photos: photos_need_terrain"
 
 
+@pytest.mark.long
 def test_terrain_that_ends_before_the_next_tower_is_not_enough(client: Client, tmp_path: Path) -> None:
     here = world(height_m=30.0)
     terrain(tmp_path, origin=(here.towers[2].centre.x - 0.002, 56.15))

@@ -22,6 +22,7 @@ def files(tmp_path: Path) -> dict[str, Path]:
     return {"graph": tmp_path / "graph.npz", "missions": tmp_path / "missions.json", "json": tmp_path / "plans.json"}
 
 
+@pytest.mark.long
 def test_it_plans_where_neither_database_nor_queue_answers(files):
     options = [part for name, path in files.items() for part in (f"--{name}", str(path))]
     nowhere = os.environ | {"DATABASE_URL": "postgis://nobody@127.0.0.1:1/nothing", "REDIS_URL": "redis://127.0.0.1:1/0"}

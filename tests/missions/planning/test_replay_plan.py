@@ -71,6 +71,7 @@ def test_random_plans_are_made_again_as_they_were(region_file: Any, tmp_path: Pa
     assert all(1 <= count <= MAX_SOLVER_CALLS for count in calls)
 
 
+@pytest.mark.long
 def test_a_plan_is_made_again_with_django_absent(tmp_path: Path) -> None:
     here = world()
     asked = request(here.towers[5], here.bridge, here.line)

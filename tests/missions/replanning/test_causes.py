@@ -123,6 +123,7 @@ def test_a_zone_far_from_what_is_left_is_no_reason(flight):
     assert "Nothing would change" in offer.outcome
 
 
+@pytest.mark.long
 def test_a_uav_before_whose_nose_the_zone_lies_is_to_be_held_first(flight):
     rows = list(flight.route(0).waypoints.order_by("sequence"))
     first = next(row for row in rows if row.kind == "target")

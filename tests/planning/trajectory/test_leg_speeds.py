@@ -34,6 +34,7 @@ def test_one_leg_at_half_the_speed_is_reached_so_much_later_and_paid_with_its_ow
     assert slow.used_wh == pytest.approx(np.cumsum(np.array([20, 200, 100]) * powers_w) / 3600, rel=1e-3)
 
 
+@pytest.mark.long
 def test_the_uavs_own_speed_over_every_leg_changes_nothing() -> None:
     plain = route((0, 0, 50, 0), (1000, 0, 80, 5), (1000, 900, 60, 0))
     same = flown(at_speeds(plain, {1: 10.0, 2: 10.0}), EASTERLY)

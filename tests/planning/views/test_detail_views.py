@@ -27,9 +27,13 @@ CASES = [
     ("H-frame, 66 kV, anchor", WIDE, 0.006),
     ("wooden pole, 20 kV", ZOOM, 0.002),
 ]
+QUICK = CASES[1], CASES[4]
 FRAME_PIXELS = (1600, 1200)  # of rendered pictures
 
-each_case = pytest.mark.parametrize(("tower", "camera", "gsd_m"), CASES, ids=[f"{tower}, {camera.name}" for tower, camera, _ in CASES])
+each_case = pytest.mark.parametrize(
+    ("tower", "camera", "gsd_m"),
+    [pytest.param(*case, marks=() if case in QUICK else pytest.mark.long, id=f"{case[0]}, {case[1].name}") for case in CASES],
+)
 
 
 @cache

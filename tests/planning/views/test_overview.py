@@ -13,9 +13,11 @@ from planning.views.proof import flown_camera
 from planning.views.view_flight import NO_PHOTO
 from planning.views.view_plan import ViewSpeeds, overview_plan, overview_poses
 from planning.views.visibility import axes_of
+from tests.cases import long
 from tests.planning.views.geometry_oracle import flown_places, to_triangles_m
 from tests.planning.views.towers import FULL_FRAME, MAX_HEIGHT_M, MIN_HEIGHT_M, TOWERS, WIDE, ZOOM, StandingTower, standing
 
+QUICK = ("lattice, 380 kV, danube", "tubular, 110 kV, alternating", "portal, 110 kV", "wooden pole, 20 kV")
 CAMERAS = {"zoom": ZOOM, "full frame": FULL_FRAME, "wide": WIDE}
 
 
@@ -55,7 +57,7 @@ def test_a_side_of_each_corner_between_the_directions_of_the_line(bearing_deg: f
     assert np.abs(from_line_deg % 90.0 - 45.0).max() <= 31.0
 
 
-@pytest.mark.parametrize("tower", TOWERS)
+@pytest.mark.parametrize("tower", [*QUICK, *long(*(name for name in TOWERS if name not in QUICK))])
 def test_the_flight_keeps_the_clearance_and_its_heights(tower: str) -> None:
     stands = standing(TOWERS[tower])
     plan = overview_plan(stands.site, WIDE, 0.05, ViewSpeeds())

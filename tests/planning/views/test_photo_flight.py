@@ -93,6 +93,7 @@ def test_ground_that_is_not_known_under_a_part_of_it_is_refused() -> None:
         photo_flight(planned(), FRAME, BASE_M, gap, 5.0, ZOOM.gimbal)
 
 
+@pytest.mark.long
 def test_it_is_the_same_after_json() -> None:
     flight = flown(0.1)
     again = PhotoFlight.from_json(flight.to_json())

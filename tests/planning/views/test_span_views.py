@@ -24,7 +24,7 @@ from tests.planning.views.towers import FULL_FRAME, MAX_HEIGHT_M, MIN_HEIGHT_M, 
 
 AROUND_M = SPAN_M / 2.0 + 80.0
 GSD_M = 0.008
-QUICK = ("lattice, 380 kV, danube", "tubular, 110 kV, alternating", "wooden pole, 20 kV")
+QUICK = ("lattice, 380 kV, danube", "wooden pole, 20 kV")
 NAMES = [*QUICK, *long(*(name for name in TOWERS if name not in QUICK))]
 CAMERAS = {"zoom": ZOOM, "full frame": FULL_FRAME}
 

@@ -59,6 +59,7 @@ def test_nobody_is_somebody_else_by_naming_addresses_or_by_another_address_of_th
     assert statuses(site, ["/api/schema"], "2001:db8:1:3:3::1") == [200]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("site", [None], indirect=True)
 def test_fifty_operators_behind_one_address_work_at_once(site: str) -> None:
     """Each opens a map (30 tiles), a 3D view and the document, and exports two files."""

@@ -22,6 +22,7 @@ def judged(flight: RouteFlight, route: RouteFile) -> np.ndarray:
     return beside_m(np.array([(sample.lon, sample.lat) for sample in samples]), list(route.positions))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("weather", "most_rms_m", "most_m", "seed"),
     [

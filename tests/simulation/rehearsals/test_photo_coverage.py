@@ -145,6 +145,7 @@ def test_an_overview_flown_in_wind_shows_what_was_promised(here: World, client: 
     assert (windy["deviations"], windy["not_counted"]) == ([], [])
 
 
+@pytest.mark.long
 def test_photos_of_wires_flown_in_wind_show_what_was_promised(here: World, client: Client, person: User) -> None:
     wires = {"kind": "photo", "views": {"pattern": "spans", "gsd_mm": 8, "camera": camera_to_json(LONG)}}
     mission = planned(client, {"asset": here.towers[2].pk, "task": wires}, camera=LONG)
@@ -158,6 +159,7 @@ def test_photos_of_wires_flown_in_wind_show_what_was_promised(here: World, clien
     assert (windy["deviations"], windy["not_counted"]) == ([], [])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("beyond_deg", [0.0, 0.00003], ids=["in place", "2 m nearer to the other tower"])
 def test_photos_of_wires_without_a_waypoint_count_for_the_tower_that_they_are_planned_for(
     here: World, client: Client, beyond_deg: float

@@ -99,6 +99,7 @@ def test_photos_are_kept_with_the_pose_of_the_lens_of_the_types_camera(here: Wor
     assert rehearsal.uavs[0]["camera"]["name"] == "Nadir"
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_track(mission: Mission, person: User) -> None:
     first, second = (rehearsed(mission, person, "strong-wind", seed=3, afresh=True) for _ in range(2))
     tracks = [RehearsalTrack.objects.get(run__rehearsal=rehearsal).flights for rehearsal in (first, second)]

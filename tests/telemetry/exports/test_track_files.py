@@ -216,6 +216,7 @@ def test_geojson_and_csv_lose_nothing_where_pieces_meet(number: int) -> None:
     assert len(list(xml("gpx", *records).iter(f"{{{NAMESPACE}}}trkpt"))) == number
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [10_000, pytest.param(100_000, marks=pytest.mark.long)])
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_records_take_no_more_memory_than_a_few(kind: str, number: int) -> None:

@@ -89,6 +89,7 @@ def test_photos_are_reported_once_also_after_a_lost_link(
     assert flight.journal.waiting("captures", 10) == flight.journal.refused("captures") == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("down_s", [5, *long(60, 600)])
 @pytest.mark.parametrize("answers_only", [False, True], ids=["no request arrives", "no answer arrives"])
 def test_a_uav_without_a_link_flies_on_asks_again_at_once_and_loses_nothing(flight: Flight, down_s: int, answers_only: bool) -> None:
@@ -134,6 +135,7 @@ def test_a_link_that_comes_and_goes_loses_nothing(flight: Flight) -> None:
     assert UavCommand.objects.exclude(state=CommandState.APPLIED).count() == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 5))])
 def test_a_companion_that_crashes_at_any_request_loses_nothing(flight: Flight, seed: int) -> None:
     """Killed before the request arrives, or after it was stored and before that was noted; then started anew from its file."""

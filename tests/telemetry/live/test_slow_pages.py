@@ -53,6 +53,7 @@ def test_a_reader_that_has_lost_count_is_given_everything_but_not_all_the_time(m
         reader.confirm(4)
 
 
+@pytest.mark.long
 @pytest.mark.django_db(transaction=True)
 def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_alone(here: Endpoint) -> None:
     uavs = [a_uav("Tern"), a_uav("Gull")]

@@ -27,6 +27,7 @@ def test_a_mission_is_brought_and_flown_to_its_end(transport, uav, mission, new_
     assert TelemetryRecord.objects.filter(uav=uav).exists() and not vehicle.is_armed
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("transport", ["udp", pytest.param("tcp", marks=pytest.mark.long)])
 def test_it_says_no_more_than_it_is_asked_for(transport, uav, mission, new_vehicle, tmp_path):
     """At its own pace: a window of the rate is 10 s."""

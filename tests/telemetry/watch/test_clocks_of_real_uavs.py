@@ -75,6 +75,7 @@ def test_a_link_that_lags_is_learnt_as_a_slow_clock() -> None:
     assert learnt_rate() < 0.9
 
 
+@pytest.mark.long
 def test_two_real_uavs_that_meet_are_told_while_one_link_lags() -> None:
     assert "converging" in alerts_of(flying(is_simulated=False))
 

@@ -7,17 +7,24 @@ import * as picks from "../selection.js";
 import { notPickedYet } from "../targets/caught.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { BridgesOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */
+/** @import { BridgesOutput, LinePartsOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */
 /** @import { MissionContext, PickedTarget } from "../types.d.ts" */
 
 /** @typedef {(targets: PickedTarget[], words: (added: string) => string) => number} AddMany adds many at once and announces it */
+/** @typedef {{ addMany: AddMany, addTargets: (targets: PickedTarget[]) => number }} Adds */
+
+const SHARED_FROM_M = 2_000; // shorter lines are one target
 
 /** @param {PickedAsset[]} rows */
 const rowsToTargets = (rows) => rows.map(picks.targetOfRow);
 
-/** @param {MissionContext} context @param {AddMany} addMany */
-export function createNetworkPicking(context, addMany) {
-  return { ...createAreaPicking(context, addMany), ...createLinePicking(context, addMany) };
+/** @param {MissionContext} context @param {Adds} adds */
+export function createNetworkPicking(context, adds) {
+  return {
+    ...createAreaPicking(context, adds.addMany),
+    ...createLinePicking(context, adds.addMany),
+    ...createSharing(context, adds),
+  };
 }
 
 /** @param {MissionContext} context @param {AddMany} addMany */
@@ -85,16 +92,6 @@ function createLinePicking({ failed }, addMany) {
   /** @param {PickedAsset[]} rows */
   const addSupports = (rows) => addMany(rowsToTargets(rows), (added) => t("{added} along the line.", { added }));
 
-  /** Flown along: one target for each line that the path follows. @param {StretchPart[]} parts */
-  function addStretch(parts) {
-    const targets = parts.map(({ line, stretch, length_m }) => {
-      const [[west, south], [east, north]] = stretch;
-      const centre = [(west + east) / 2, (south + north) / 2];
-      return picks.targetOf({ id: line.id, kind: line.kind, properties: { ...line, length_m }, centre, stretch });
-    });
-    addMany(targets, (added) => t("{added} to fly along.", { added }));
-  }
-
   /** @param {number} line */
   async function addTowersOf(line) {
     try {
@@ -135,5 +132,86 @@ function createLinePicking({ failed }, addMany) {
     }
   }
 
-  return { stretchBetween, addSupports, addStretch, addTowersOf, addBridgesOf };
+  return { stretchBetween, addSupports, addTowersOf, addBridgesOf };
 }
+
+/**
+ * Lines and railways in parts, which UAVs share; or whole, for one UAV.
+ *
+ * @param {MissionContext} context
+ * @param {Adds} adds
+ */
+function createSharing({ failed, selection, change, history }, { addMany, addTargets }) {
+  const undo = () => ({ label: t("Undo"), act: () => history.undo() });
+
+  /** @param {number} line @param {number[][]} [ends] */
+  async function partsOf(line, ends) {
+    const asked = ends ? `?ends=${ends.flat().join(",")}` : "";
+    const { data } = /** @type {Answer<LinePartsOutput>} */ (await get(`/assets/${line}/parts${asked}`));
+    return data.length_m < SHARED_FROM_M ? [] : data.parts;
+  }
+
+  /** @param {PickedTarget} target a line or railway from end to end; any other is added as it is */
+  async function addWhole(target) {
+    const { asset } = target;
+    if (asset === null || !picks.isWholeLine(target)) {
+      addTargets([target]);
+      return;
+    }
+    try {
+      const parts = await partsOf(asset);
+      if (parts.length < 2) addTargets([target]);
+      else {
+        const added = addTargets(parts.map(picks.targetOfPart));
+        if (added)
+          toast(sharedWords(target.label, parts.length), {
+            label: t("One UAV flies it whole"),
+            act: () => flyWhole(asset),
+          });
+      }
+    } catch (error) {
+      failed(t("The line could not be read."), error);
+    }
+  }
+
+  /** Flown along: the lines that the path follows, the long ones in parts. @param {StretchPart[]} followed */
+  async function addStretch(followed) {
+    try {
+      const divided = await Promise.all(
+        followed.map(async (part) => {
+          const parts = part.length_m < SHARED_FROM_M ? [] : await partsOf(part.line.id, part.stretch);
+          return parts.length ? parts : [part];
+        }),
+      );
+      addMany(divided.flat().map(picks.targetOfPart), (added) => t("{added} to fly along.", { added }));
+    } catch (error) {
+      failed(t("The line could not be read."), error);
+    }
+  }
+
+  /** Divide a line that is picked whole. @param {PickedTarget} target */
+  async function share({ asset, key, label }) {
+    if (asset === null) return;
+    try {
+      const parts = await partsOf(asset);
+      if (parts.length < 2) toast(t("{name} is too short to share.", { name: label }));
+      else if (change(picks.withParts(selection(), key, parts.map(picks.targetOfPart))))
+        toast(sharedWords(label, parts.length), undo());
+    } catch (error) {
+      failed(t("The line could not be read."), error);
+    }
+  }
+
+  /** The whole line in place of its parts. @param {number} line */
+  function flyWhole(line) {
+    const label = selection().targets.find(({ asset, stretch }) => asset === line && stretch)?.label ?? "";
+    if (change(picks.withWholeLine(selection(), line)))
+      toast(t("One UAV flies {name} from end to end.", { name: picks.lineOfPart(label) }), undo());
+  }
+
+  return { addWhole, addStretch, share, flyWhole };
+}
+
+/** @param {string} name @param {number} count */
+const sharedWords = (name, count) =>
+  tn(count, "{name}: {count} part, which UAVs share.", "{name}: {count} parts, which UAVs share.", { name });

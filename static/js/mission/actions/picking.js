@@ -85,7 +85,7 @@ export function createPicking(context) {
     addTargets,
     addMany,
     replaceTargets,
-    ...createNetworkPicking(context, addMany),
+    ...createNetworkPicking(context, { addMany, addTargets }),
     ...createTargetChanges(context),
     targetOfFeature,
   };

@@ -13,7 +13,7 @@ import { createChoice } from "./choice.js";
 /** @import { MissionActions, MissionPageState, MissionStore } from "../types.d.ts" */
 /** @import { createChoice as CreateChoice } from "./choice.js" */
 
-/** @typedef {Pick<MissionActions, "addTargets" | "removeTargets" | "addTowersOf" | "addBridgesOf" | "addSupports" | "addStretch" | "stretchBetween">} Acts */
+/** @typedef {Pick<MissionActions, "addTargets" | "addWhole" | "removeTargets" | "addTowersOf" | "addBridgesOf" | "addSupports" | "addStretch" | "stretchBetween">} Acts */
 /** @typedef {ReturnType<typeof CreateChoice>} ChoiceBox */
 
 /** @param {string} words */
@@ -49,7 +49,7 @@ export function createMapPicking({ frame, store, actions, opened }) {
       const isLine = thing.geometry.type === "LineString" || thing.geometry.type === "MultiLineString";
       const onLine = (isLine && nearestOnLine(/** @type {Line} */ (thing.geometry), place)) || place;
       if (tool === "line" && thing.kind === "line")
-        actions.addTargets([targetOf({ ...assetOf(thing), centre: onLine })]);
+        void actions.addWhole(targetOf({ ...assetOf(thing), centre: onLine }));
       else if (tool === "line" || thing.kind === "line") chooseOnLine(thing, onLine, point, actions, choice);
       else pickRailwayPoint(thing, onLine, actions);
     }
@@ -102,7 +102,7 @@ function chooseOnLine(thing, place, point, actions, choice) {
   const whole = {
     icon: kind,
     words: sentence(extentOf(kind, properties.length_m) ?? ""),
-    act: () => actions.addTargets([targetOf({ ...assetOf(thing), centre: place })]),
+    act: () => actions.addWhole(targetOf({ ...assetOf(thing), centre: place })),
   };
   const here = {
     icon: "map-pin",
@@ -157,7 +157,7 @@ function stretchPicking(store, actions, choice) {
     const flown = {
       icon: "line",
       words: t("Fly along, {length}", { length: lengthText(length_m) }),
-      act: () => actions.addStretch(parts),
+      act: () => void actions.addStretch(parts),
     };
     choice.open(title, [towers, flown], point);
   }

@@ -222,6 +222,7 @@ def test_a_mission_is_taken_off_once_the_vehicle_may_be_written_to(uav, mission,
     assert len(vehicle.lists[MissionType.MISSION]) == 1, "home alone"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot_type", [pytest.param(AutopilotType.PX4, marks=pytest.mark.long), AutopilotType.ARDUPILOT])
 def test_a_vehicle_that_goes_over_to_another_gateway_in_mid_upload_holds_what_was_approved(autopilot_type, uav, mission, tmp_path):
     vehicle = AUTOPILOT_TYPES[autopilot_type]()

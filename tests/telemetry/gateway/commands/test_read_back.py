@@ -51,6 +51,7 @@ def test_a_fence_that_nobody_approved_is_found_at_the_start(uav, mission, tmp_pa
         assert link_of(uav).loaded_approval is None
 
 
+@pytest.mark.long
 def test_a_fence_of_its_own_that_was_told_at_the_upload_may_stay_but_not_change(uav, mission, tmp_path):
     vehicle = Px4()
     vehicle.lists[MissionType.FENCE] = list(OTHERS_FENCE)

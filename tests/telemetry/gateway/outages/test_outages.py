@@ -177,6 +177,7 @@ RATE = 120.0  # the vehicle's seconds a second
 REPORTS_HZ = 5.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("order", ["kept first", pytest.param("mixed", marks=pytest.mark.long)])
 @pytest.mark.parametrize("lost_s", [5, 60, pytest.param(600, marks=pytest.mark.long)])
 def test_a_buffering_vehicle_loses_and_doubles_nothing(lost_s, order, tmp_path):

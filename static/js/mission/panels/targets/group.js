@@ -1,30 +1,42 @@
-/** Targets that stand one after the other on one line, as groups of the list; the head of each stands at the first of its rows. */
+/** Targets one after the other on one line, or parts of it, as groups of the list; the head of each stands at the first of its rows. */
 
 import { find, h, icon } from "../../../dom.js";
+import { routeNumber } from "../../../domain/palette.js";
 import { tn } from "../../../text.js";
+import { lineOfPart } from "../../selection.js";
 
 /** @import { PickedTarget } from "../../types.d.ts" */
+/** @import { RowState } from "./row.js" */
 
-/** @typedef {{ key: string, line: number, words: string, keys: string[] }} LineGroup `key`: of its first target */
+/** @typedef {{ key: string, line: number, words: string, keys: string[], isOfParts: boolean }} LineGroup `key`: of its first target */
+/** @typedef {Map<string, NonNullable<RowState["place"]>>} Places in the plan, by key */
 
 const MIN_TARGETS = 13; // shorter lists are seen whole
 const MIN_IN_GROUP = 3;
 
-/** @param {Pick<PickedTarget, "key" | "line" | "detail" | "label">[]} targets in the order of the list @returns {LineGroup[]} */
-export function lineGroups(targets) {
-  if (targets.length < MIN_TARGETS) return [];
+/**
+ * Supports of one line are grouped in long lists, its parts in any.
+ *
+ * @param {Pick<PickedTarget, "key" | "asset" | "line" | "stretch" | "detail" | "label">[]} targets in the order of the list
+ * @param {(key: string) => number | undefined} [routeOf] a group has targets of one route alone
+ * @returns {LineGroup[]}
+ */
+export function lineGroups(targets, routeOf = () => undefined) {
   /** @type {LineGroup[]} */
   const runs = [];
-  /** @type {number | null} */
-  let before = null;
-  for (const { key, line, detail, label } of targets) {
-    if (line !== null && line !== undefined) {
-      if (line === before) runs.at(-1)?.keys.push(key);
-      else runs.push({ key, line, words: detail || label, keys: [key] });
-    }
-    before = line ?? null;
+  let before = "";
+  for (const { key, asset, line, stretch, detail, label } of targets) {
+    const isOfParts = Boolean(stretch);
+    const on = isOfParts ? asset : (line ?? null);
+    const run = on === null ? "" : [on, isOfParts, routeOf(key)].join(" ");
+    if (run && run === before) runs.at(-1)?.keys.push(key);
+    else if (on !== null)
+      runs.push({ key, line: on, words: isOfParts ? lineOfPart(label) : detail || label, keys: [key], isOfParts });
+    before = run;
   }
-  return runs.filter(({ keys }) => keys.length >= MIN_IN_GROUP);
+  return runs.filter(
+    ({ keys, isOfParts }) => keys.length >= MIN_IN_GROUP && (isOfParts || targets.length >= MIN_TARGETS),
+  );
 }
 
 /**
@@ -41,7 +53,7 @@ export function withoutFolded(targets, groups, isFolded) {
 }
 
 /**
- * The groups of the list, and which of them are folded: of a list longer than `most` all, until the user decides.
+ * The groups of the list, and which of them are folded: those of parts, and of a list longer than `most` all, until the user decides.
  *
  * @param {() => void} changed
  * @param {number} most
@@ -53,17 +65,17 @@ export function createGroups(changed, most) {
   const folded = new Map();
   let isLong = false;
   /** @param {LineGroup} group */
-  const isFolded = ({ line }) => folded.get(line) ?? isLong;
+  const isFolded = ({ line, isOfParts }) => folded.get(line) ?? (isLong || isOfParts);
   return {
     /** @param {PickedTarget[]} all */
     none(all) {
       groups = new Map();
       return all;
     },
-    /** @param {PickedTarget[]} all */
-    unfolded(all) {
+    /** @param {PickedTarget[]} all @param {Places} places */
+    unfolded(all, places) {
       isLong = all.length > most;
-      const found = lineGroups(all);
+      const found = lineGroups(all, (key) => places.get(key)?.sequence);
       groups = new Map(found.map((group) => [group.key, group]));
       return withoutFolded(all, found, isFolded);
     },
@@ -72,19 +84,22 @@ export function createGroups(changed, most) {
       const group = groups.get(target.key);
       return group && isFolded(group) ? group.keys : null;
     },
-    /** @param {HTMLElement} row @param {PickedTarget} target */
-    refresh(row, target) {
+    /** @param {HTMLElement} row @param {PickedTarget} target @param {Places} places */
+    refresh(row, target, places) {
       const group = groups.get(target.key);
       const toggle = () => {
         if (group) folded.set(group.line, !isFolded(group));
         changed();
       };
-      refreshGroup(row, group && { ...group, isFolded: isFolded(group), toggle });
+      refreshGroup(row, group && { ...group, isFolded: isFolded(group), toggle, place: places.get(group.key) });
     },
   };
 }
 
-/** @param {HTMLElement} row @param {(LineGroup & { isFolded: boolean, toggle: () => void }) | undefined} group */
+/**
+ * @param {HTMLElement} row
+ * @param {(LineGroup & { isFolded: boolean, toggle: () => void, place: RowState["place"] }) | undefined} group
+ */
 function refreshGroup(row, group) {
   const before = row.querySelector(".group-head");
   row.classList.toggle("folded", Boolean(group?.isFolded));
@@ -94,11 +109,22 @@ function refreshGroup(row, group) {
   }
   const head = before ?? h("button", { type: "button", class: "group-head" });
   if (!before) {
-    head.append(icon("chevron-down", "small"), h("span", {}), h("small", { class: "caption" }));
+    head.append(
+      icon("chevron-down", "small"),
+      h("i", { class: "pill" }),
+      h("span", {}),
+      h("small", { class: "caption" }),
+    );
     row.prepend(head);
   }
   head.setAttribute("aria-expanded", String(!group.isFolded));
   /** @type {HTMLElement} */ (head).onclick = group.toggle;
   find(head, "span").textContent = group.words;
-  find(head, "small").textContent = tn(group.keys.length, "{count} target", "{count} targets");
+  const pill = find(head, ".pill", HTMLElement);
+  pill.hidden = !group.place;
+  pill.className = group.place ? `pill route-${routeNumber(group.place.sequence)}` : "pill";
+  pill.textContent = group.place?.letter ?? "";
+  find(head, "small").textContent = group.isOfParts
+    ? tn(group.keys.length, "{count} part", "{count} parts")
+    : tn(group.keys.length, "{count} target", "{count} targets");
 }

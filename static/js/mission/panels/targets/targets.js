@@ -97,7 +97,7 @@ export function mountTargets(store, actions, canPlan, map) {
         selection: store.state.selection,
         wished: wishedPlace(shown.orders, store.state.selection, target.key),
       });
-      groups.refresh(row, target);
+      groups.refresh(row, target, shown.places);
     },
   );
 
@@ -109,7 +109,7 @@ export function mountTargets(store, actions, canPlan, map) {
     const arrivals = isPlanCurrent(state) ? arrivalsOf(state.plan) : new Map();
     if (targets.length <= 1) choosing.turn(false);
     list.classList.toggle("choosing", choosing.isOn());
-    const unfolded = choosing.isOn() ? groups.none(all) : groups.unfolded(all);
+    const unfolded = choosing.isOn() ? groups.none(all) : groups.unfolded(all, places);
     const visible = showAll ? unfolded : unfolded.slice(0, SHOWN_FIRST);
     const [order, rows] = [all, visible].map((listed) => listed.map((target) => target.key));
     shown = { places, missed, order, visible: rows, arrivals, orders: ordersOf(state.plan) };
@@ -173,13 +173,16 @@ function mountChoosing(list, store, actions, { choosing, planViews, refresh }) {
   };
 }
 
-/** Parts of a line or railway that can be picked instead of the whole. @param {PickedTarget} target @param {MissionActions} actions */
+/** What else can be picked of a line or railway, and whether UAVs share it. @param {PickedTarget} target @param {MissionActions} actions */
 function more(target, actions) {
   const { asset } = target;
   if (!isWhole(target) || asset === null) return [];
-  if (target.kind === "line")
-    return [{ icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(asset) }];
-  return [{ icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(asset) }];
+  if (target.stretch)
+    return [{ icon: target.kind, words: t("One UAV flies it whole"), act: () => actions.flyWhole(asset) }];
+  const share = { icon: "replace", words: t("Share it among UAVs"), act: () => void actions.share(target) };
+  return target.kind === "line"
+    ? [share, { icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(asset) }]
+    : [share, { icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(asset) }];
 }
 
 /**

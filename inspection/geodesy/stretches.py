@@ -1,0 +1,109 @@
+"""Places and stretches on a line or railway, and its parts that UAVs can share."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.geodesy.local_frame import LocalFrame
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+MAX_PARTS = 24  # of one line: a mission takes 500 targets
+SAME_LENGTH_M = 0.1
+
+
+@dataclass(frozen=True)
+class PlaceOnLine:
+    """The point of a line that is nearest to a position; `share` is how far along the segment it lies, from 0 to 1."""
+
+    segment: int
+    share: float
+    position: LonLat
+    distance_m: float
+
+
+def nearest_on_line(line: FloatArray, position: LonLat) -> PlaceOnLine:
+    """line has shape (n, 2), n >= 2, columns lon, lat [deg]. Near the position the answer is right to 0.1 %."""
+    frame = LocalFrame.around(position.lon, position.lat)
+    metres = frame.to_metres(line)  # the position is the origin
+    start, along = metres[:-1], np.diff(metres, axis=0)
+    squared = (along**2).sum(axis=1)
+    share = np.clip(-(start * along).sum(axis=1) / np.where(squared > 0, squared, 1.0), 0.0, 1.0)
+    gap_m = np.hypot(*(start + share[:, None] * along).T)
+    segment = int(gap_m.argmin())
+    at = line[segment] + share[segment] * (line[segment + 1] - line[segment])
+    place = LonLat(float(at[0]), float(at[1]))
+    return PlaceOnLine(segment, float(share[segment]), place, float(distance_m(np.array(place), np.array(position))[0]))
+
+
+def stretch_between(line: FloatArray, first: PlaceOnLine, second: PlaceOnLine) -> tuple[LonLat, ...]:
+    """The line's course between two places on it, in the line's own direction, without repeated points."""
+    if (second.segment, second.share) < (first.segment, first.share):
+        first, second = second, first
+    inner = line[first.segment + 1 : second.segment + 1]
+    course = [first.position, *(LonLat(float(lon), float(lat)) for lon, lat in inner), second.position]
+    return tuple(place for number, place in enumerate(course) if number == 0 or place != course[number - 1])
+
+
+@dataclass(frozen=True)
+class LinePart:
+    """A part of a line; from_m and to_m are along the line, from its first vertex."""
+
+    start: LonLat
+    end: LonLat
+    from_m: float
+    to_m: float
+
+    @property
+    def length_m(self) -> float:
+        return self.to_m - self.from_m
+
+
+def line_end(line: FloatArray, which: int) -> PlaceOnLine:
+    """Return the first place of a line (0) or the last one (-1)."""
+    at = LonLat(float(line[which][0]), float(line[which][1]))
+    return PlaceOnLine(0, 0.0, at, 0.0) if which == 0 else PlaceOnLine(len(line) - 2, 1.0, at, 0.0)
+
+
+def part_between(line: FloatArray, first: PlaceOnLine, second: PlaceOnLine) -> LinePart:
+    """Return the part of a line between two places on it, in the line's direction."""
+    if (second.segment, second.share) < (first.segment, first.share):
+        first, second = second, first
+    from_m, to_m = (path_length_m(np.array([*line[: place.segment + 1], place.position])) for place in (first, second))
+    return LinePart(first.position, second.position, from_m, to_m)
+
+
+def parts_of_line(
+    line: FloatArray, part_m: float, *, ends: tuple[PlaceOnLine, PlaceOnLine] | None = None, at: Sequence[int] | IntArray = ()
+) -> list[LinePart]:
+    """Return a line, or its stretch between two places, cut at vertices into at most MAX_PARTS parts of about `part_m` metres.
+
+    at: the vertices where it may be cut, such as those with a support; if none of them lies on the way, all. A stretch is stored as
+    its two ends: where these would lead to another part, as on a line that meets itself, the whole is returned as one part.
+    """
+    first, last = ends or (line_end(line, 0), line_end(line, -1))
+    whole = part_between(line, first, last)
+    count = min(MAX_PARTS, round(whole.length_m / part_m))
+    vertex_m = np.concatenate([[0.0], np.cumsum(distance_m(line[:-1], line[1:]))])
+    inside = np.flatnonzero((vertex_m > whole.from_m + SAME_LENGTH_M) & (vertex_m < whole.to_m - SAME_LENGTH_M))
+    candidates = np.intersect1d(inside, np.asarray(at, dtype=np.int64))
+    candidates = candidates if len(candidates) else inside
+    if count < 2 or not len(candidates):
+        return [whole]
+    wanted_m = whole.from_m + whole.length_m * np.arange(1, count) / count
+    cuts = np.unique(candidates[np.abs(vertex_m[candidates] - wanted_m[:, None]).argmin(axis=1)])
+    places = [whole.start, *(LonLat(float(lon), float(lat)) for lon, lat in line[cuts]), whole.end]
+    lengths_m = [whole.from_m, *vertex_m[cuts].tolist(), whole.to_m]
+    parts = [LinePart(*at, *along_m) for at, along_m in zip(pairwise(places), pairwise(lengths_m), strict=True)]
+    return parts if all(_leads_back(line, part) for part in parts) else [whole]
+
+
+def _leads_back(line: FloatArray, part: LinePart) -> bool:
+    """Whether the ends of the part, looked up on the line, give the part itself."""
+    found = part_between(line, nearest_on_line(line, part.start), nearest_on_line(line, part.end))
+    return abs(found.from_m - part.from_m) < SAME_LENGTH_M and abs(found.to_m - part.to_m) < SAME_LENGTH_M
