@@ -30,6 +30,7 @@ urlpatterns = [
     re_path(r"^assets/export\.(?P<ending>csv|geojson|gpkg)$", asset_register.AssetExport.as_view(), name="api-asset-file"),
     path("assets/lookup", picking.AssetLookup.as_view(), name="api-asset-lookup"),
     path("assets/within", picking.AssetsWithin.as_view(), name="api-assets-within"),
+    path("assets/parts", picking.PartsOfLines.as_view(), name="api-parts-of-lines"),
     path("assets/stretch", picking.StretchAlongLines.as_view(), name="api-stretch"),
     path("assets/<int:asset_id>/supports", picking.LineSupports.as_view(), name="api-line-supports"),
     path("assets/<int:asset_id>/parts", picking.LineParts.as_view(), name="api-line-parts"),

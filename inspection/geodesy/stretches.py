@@ -64,6 +64,11 @@ class LinePart:
         return self.to_m - self.from_m
 
 
+def part_count(length_m: float, part_m: float) -> int:
+    """Return into how many parts of about `part_m` metres a length is divided, from 1 to MAX_PARTS."""
+    return max(1, min(MAX_PARTS, round(length_m / part_m)))
+
+
 def line_end(line: FloatArray, which: int) -> PlaceOnLine:
     """Return the first place of a line (0) or the last one (-1)."""
     at = LonLat(float(line[which][0]), float(line[which][1]))
@@ -88,7 +93,7 @@ def parts_of_line(
     """
     first, last = ends or (line_end(line, 0), line_end(line, -1))
     whole = part_between(line, first, last)
-    count = min(MAX_PARTS, round(whole.length_m / part_m))
+    count = part_count(whole.length_m, part_m)
     vertex_m = np.concatenate([[0.0], np.cumsum(distance_m(line[:-1], line[1:]))])
     inside = np.flatnonzero((vertex_m > whole.from_m + SAME_LENGTH_M) & (vertex_m < whole.to_m - SAME_LENGTH_M))
     candidates = np.intersect1d(inside, np.asarray(at, dtype=np.int64))

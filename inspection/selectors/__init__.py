@@ -1,6 +1,6 @@
 """Reads of map data for views, commands and other apps."""
 
-from inspection.selectors.asset_names import asset_detail, asset_label, part_label, voltage_text
+from inspection.selectors.asset_names import asset_detail, asset_label, label_now, part_label, voltage_text
 from inspection.selectors.assets import (
     UNREAD_OF_A_LINE,
     Box,
@@ -37,6 +37,7 @@ __all__ = [
     "ground_revision",
     "ground_summary",
     "has_terrain",
+    "label_now",
     "map_data",
     "part_label",
     "references_of",

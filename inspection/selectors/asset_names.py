@@ -32,6 +32,7 @@ WORDS = {
     "tram": gettext_noop("Tramway"),
     "subway": gettext_noop("Subway"),
 }
+PART = re.compile(r", km [0-9.]+–[0-9.]+$")
 CARRIES = {
     "a road and a railway": gettext_noop("carries a road and a railway"),
     "a railway": gettext_noop("carries a railway"),
@@ -146,6 +147,12 @@ def part_label(asset: Asset, from_m: float, to_m: float) -> str:
     Written alike in all languages: pages find the line's own label before the ", km".
     """
     return f"{asset_label(asset)}, km {from_m / 1_000.0:.1f}–{to_m / 1_000.0:.1f}"
+
+
+def label_now(asset: Asset, stored: str) -> str:
+    """Return the current label of an asset, or of its part that was stored under a label of `part_label`."""
+    part = PART.search(stored)
+    return asset_label(asset) + (part.group() if part else "")
 
 
 def asset_detail(asset: Asset) -> str:

@@ -1,5 +1,6 @@
 """Selecting many assets at once: by a list, in an area, the supports of a line, the bridges of a railway."""
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from django.db.models import F, Func, Q, QuerySet, TextField, Value
 from django.db.models.functions import Lower
 
 from inspection.geodesy import LonLat
-from inspection.geodesy.stretches import FloatArray, LinePart, nearest_on_line, part_between, parts_of_line
+from inspection.geodesy.stretches import FloatArray, LinePart, nearest_on_line, part_between, part_count, parts_of_line
 from inspection.models import Asset, AssetKind
 from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
 from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order, vertices_at_supports
@@ -33,6 +34,8 @@ SECTION_GAP_DEG = 0.002  # some 200 m: a bridge or a switch with another name ma
 MAX_CROSSINGS = 500  # of a drawn line with itself: computing its area takes time quadratic in them
 SIDES_AT_ONCE = 256
 BESIDE_DEG = 1e-5  # about a metre: a bridge's outline may end where the section begins
+DEFAULT_PART_M = 1_000.0  # of a line that UAVs share
+LONGER = 1.1
 CARRIES_TRACK = ("", "a railway", "a road and a railway")  # "": its ways do not state what it carries
 
 
@@ -161,9 +164,18 @@ def parts_of_asset(asset: Asset, part_m: float, ends: Sequence[LonLat] | None = 
     Raises NotOneLine.
     """
     course = _course(asset)
-    at = vertices_at_supports(*_supports_and_line(asset)) if asset.kind == AssetKind.LINE else ()
+    is_cut = asset.kind == AssetKind.LINE and part_count(asset.length_m or math.inf, part_m) > 1
+    at = vertices_at_supports(*_supports_and_line(asset)) if is_cut else ()
     stretch = None if ends is None else (nearest_on_line(course, ends[0]), nearest_on_line(course, ends[1]))
     return parts_of_line(course, part_m, ends=stretch, at=at)
+
+
+def part_length_m(lengths_m: Sequence[float], most: int) -> float:
+    """Return how long parts are, metres, so that lines of these lengths have at most so many; no more lines than that are expected."""
+    part_m = DEFAULT_PART_M
+    while part_m < max(lengths_m, default=0.0) and sum(part_count(length_m, part_m) for length_m in lengths_m) > most:
+        part_m *= LONGER
+    return part_m
 
 
 def label_between(line: Asset, start: LonLat, end: LonLat) -> str:
@@ -261,6 +273,7 @@ def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
 
 
 __all__ = [
+    "DEFAULT_PART_M",
     "MAX_IN_AN_AREA",
     "NoWayAlongLines",
     "NotOnTheLine",
@@ -273,6 +286,7 @@ __all__ = [
     "assets_in_area",
     "bridges_of_railway",
     "label_between",
+    "part_length_m",
     "parts_of_asset",
     "plain_ref",
     "stretch_along_lines",

@@ -12,6 +12,7 @@ from workspace.jobs.serializers import Declared
 MAX_REFS = 2_000
 MAX_REF_LENGTH = 255
 MAX_CORNERS = 5_000
+MAX_LINES = 500  # as many as a mission takes targets
 
 
 class PickedAssetSerializer(serializers.Serializer):
@@ -96,6 +97,18 @@ class LinePartsOutputSerializer(serializers.Serializer):
 
     parts = StretchPartSerializer(many=True, help_text="in the line's direction; one where the line cannot be divided")
     length_m = serializers.FloatField()
+
+
+class PartsInputSerializer(serializers.Serializer):
+    assets = serializers.ListField(
+        child=serializers.IntegerField(min_value=1, max_value=2**31 - 1),
+        allow_empty=False,
+        max_length=MAX_LINES,
+        help_text="ids of lines and railways",
+    )
+    most = serializers.IntegerField(
+        min_value=1, max_value=MAX_LINES, default=MAX_LINES, help_text="parts of all of them together: the fewer, the longer they are"
+    )
 
 
 class BridgesOutputSerializer(serializers.Serializer):

@@ -12,6 +12,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.geodesy import LonLat
+from inspection.geodesy.stretches import LinePart
 from inspection.models import Asset, AssetKind
 from inspection.selectors import part_label, picking
 from inspection.serializers.assets import FIELDS_OF_AN_ASSET
@@ -20,6 +21,7 @@ from inspection.serializers.picking import (
     LinePartsOutputSerializer,
     LookupInputSerializer,
     LookupOutputSerializer,
+    PartsInputSerializer,
     SupportsOutputSerializer,
     WithinInputSerializer,
     WithinOutputSerializer,
@@ -33,8 +35,7 @@ from workspace.api.whole_numbers import WholeNumber
 from workspace.models import Role
 
 MAX_CHOICES = 20
-DEFAULT_PART_M = 1_000
-PART_M = WholeNumber("part_m", f"about how long a part is, metres; {DEFAULT_PART_M} by default", minimum=100, maximum=1_000_000)
+PART_M = WholeNumber("part_m", f"about how long a part is, metres; {picking.DEFAULT_PART_M:.0f} by default", minimum=100, maximum=1_000_000)
 FROM = WholeNumber("from", "id of the support where it begins")
 TO = WholeNumber("to", "id of the support where it ends")
 
@@ -163,6 +164,10 @@ def _part_json(line: Asset, start: LonLat, end: LonLat, length_m: float, label: 
     return {"line": picked_asset(line), "label": label, "stretch": [list(start), list(end)], "length_m": length_m}
 
 
+def _part_of(line: Asset, part: LinePart) -> dict[str, Any]:
+    return _part_json(line, part.start, part.end, part.length_m, part_label(line, part.from_m, part.to_m))
+
+
 class LineParts(APIView):
     @extend_schema(
         operation_id="list_line_parts",
@@ -175,14 +180,42 @@ class LineParts(APIView):
     )
     def get(self, request: Request, asset_id: int) -> Response:
         line = _asset(asset_id, AssetKind.LINE, AssetKind.RAILWAY)
-        part_m = PART_M.asked(request) or DEFAULT_PART_M
+        part_m = PART_M.asked(request) or picking.DEFAULT_PART_M
         ends = tuple(positions_of(request, "ends", 2)) if request.query_params.get("ends") else None
         try:
             found = picking.parts_of_asset(line, part_m, ends)
         except picking.NotOneLine as error:
             raise ApiProblem(400, "not_one_line", _("This asset is not drawn as one line, so it cannot be flown along.")) from error
-        parts = [_part_json(line, part.start, part.end, part.length_m, part_label(line, part.from_m, part.to_m)) for part in found]
-        return Response({"parts": parts, "length_m": sum(part.length_m for part in found)})
+        return Response({"parts": [_part_of(line, part) for part in found], "length_m": sum(part.length_m for part in found)})
+
+
+class PartsOfLines(APIView):
+    write_roles = frozenset(Role)
+
+    @extend_schema(
+        operation_id="list_parts_of_lines",
+        summary="Several lines and railways in parts that UAVs can share",
+        request=PartsInputSerializer,
+        responses=LinePartsOutputSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        body = PartsInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        asked = dict.fromkeys(body.validated_data["assets"])
+        lines = Asset.objects.select_related("line").filter(kind__in=[AssetKind.LINE, AssetKind.RAILWAY], vanished_at=None).in_bulk(asked)
+        for place, key in enumerate(body.validated_data["assets"]):
+            if key not in lines:
+                raise invalid(f"assets.{place}", _("There is no such line or railway."))
+        part_m = picking.part_length_m([lines[key].length_m or 0.0 for key in asked], body.validated_data["most"])
+        parts, length_m = [], 0.0
+        for key in asked:
+            try:
+                found = picking.parts_of_asset(lines[key], part_m)
+            except picking.NotOneLine:
+                continue  # it cannot be flown along
+            parts += [_part_of(lines[key], part) for part in found]
+            length_m += sum(part.length_m for part in found)
+        return Response({"parts": parts, "length_m": length_m})
 
 
 class RailwayBridgesView(APIView):

@@ -1,9 +1,11 @@
 """Missions: targets, UAVs, routes and waypoints, and saved selections."""
 
 import uuid
+from collections.abc import Sequence
 
 from django.conf import settings
 from django.contrib.gis.db import models
+from django.contrib.gis.geos import Point
 from django.contrib.postgres.fields import ArrayField
 from django.db.models import Q
 from django.db.models.functions import Now
@@ -233,6 +235,21 @@ class InspectionTarget(models.Model):
 
     def __str__(self) -> str:
         return self.label
+
+    @property
+    def place(self) -> Point | None:
+        """Where it is shown: as picked, the middle between the ends of a stretch, or the asset's centre; None if that was deleted."""
+        if self.position is not None:
+            return self.position
+        if self.stretch is not None:
+            return between_ends(self.stretch.coords)
+        return None if self.asset is None else self.asset.centre
+
+
+def between_ends(ends: Sequence[Sequence[float]]) -> Point:
+    """Return the middle between the ends of a stretch, lon lat [deg]; near the 180th meridian its first end."""
+    (west, south), (east, north) = (end[:2] for end in ends)
+    return Point(west, south, srid=4326) if abs(east - west) > 180.0 else Point((west + east) / 2.0, (south + north) / 2.0, srid=4326)
 
 
 class Route(models.Model):

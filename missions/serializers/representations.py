@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from inspection.selectors import asset_detail, asset_label
+from inspection.selectors import asset_detail, label_now
 from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint
 from missions.reason_texts import with_texts
 from missions.selectors.mission_list import ListedMission, sketch
@@ -139,10 +139,10 @@ def _uav(row: MissionUav) -> dict[str, Any]:
 
 def _target(row: InspectionTarget) -> dict[str, Any]:
     asset = row.asset
-    at = row.position or (asset.centre if asset is not None else None)
+    at = row.place
     return {
         "asset": row.asset_id,
-        "label": row.label if asset is None else asset_label(asset),
+        "label": row.label if asset is None else label_now(asset, row.label),
         "detail": "" if asset is None else asset_detail(asset),
         "kind": None if asset is None else asset.kind,
         "line": None if asset is None else asset.line_id,

@@ -2,9 +2,11 @@
 
 from typing import Any
 
-from inspection.selectors import asset_detail, asset_label
+from inspection.models import Asset
+from inspection.selectors import asset_detail, label_now
 from missions.fields import PositionField
 from missions.models import SavedSelection, TargetPriority
+from missions.models.missions import between_ends
 from missions.selectors.selections import KeptTarget, kept_targets
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
 from missions.serializers.shapes import TaskOutputSerializer
@@ -30,7 +32,7 @@ class SelectionTargetSerializer(serializers.Serializer):
     length_m = serializers.FloatField(allow_null=True)
     kind = serializers.CharField(allow_null=True)
     line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
-    position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
+    position = PositionField(allow_null=True, help_text="as picked, the middle between the ends of a stretch, else the asset's centre")
     stretch = serializers.ListField(child=PositionField(), allow_null=True)
     is_point = serializers.BooleanField()
     task = TaskOutputSerializer()
@@ -76,16 +78,22 @@ def selection_json(selection: SavedSelection) -> dict[str, Any]:
     }
 
 
+def _shown_at(stretch: list[list[float]] | None, asset: Asset | None) -> list[float] | None:
+    if stretch is not None:
+        return list(between_ends(stretch).coords)
+    return None if asset is None else list(asset.centre.coords)
+
+
 def _target(target: KeptTarget) -> dict[str, Any]:
     value, asset = target.value, target.asset
     return {
         "asset": value["asset"],
-        "label": value["label"] if asset is None else asset_label(asset),
+        "label": value["label"] if asset is None else label_now(asset, value["label"]),
         "detail": "" if asset is None else asset_detail(asset),
         "length_m": None if asset is None else asset.length_m,
         "kind": None if asset is None else asset.kind,
         "line": None if asset is None else asset.line_id,
-        "position": value["position"] or (None if asset is None else list(asset.centre.coords)),
+        "position": value["position"] or _shown_at(value["stretch"], asset),
         "stretch": value["stretch"],
         "is_point": value["position"] is not None,
         "task": value["task"],

@@ -336,7 +336,7 @@ class MissionTargetSerializer(serializers.Serializer):
     length_m = serializers.FloatField(allow_null=True, help_text="of the whole asset, where it is a line or a railway")
     kind = serializers.CharField(allow_null=True)
     line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
-    position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
+    position = PositionField(allow_null=True, help_text="as picked, the middle between the ends of a stretch, else the asset's centre")
     stretch = serializers.ListField(child=PositionField(), allow_null=True)
     is_point = serializers.BooleanField(help_text="the operator picked `position`; else it is the whole asset or the stretch")
     task = TaskOutputSerializer()

@@ -4094,7 +4094,7 @@ export interface components {
             /** @description of a support: the line of the highest voltage that it carries */
             line: number | null;
             /**
-             * @description as picked, else the asset's centre
+             * @description as picked, the middle between the ends of a stretch, else the asset's centre
              * @example [
              *       9.52,
              *       47.14
@@ -4468,6 +4468,15 @@ export interface components {
             parameters?: {
                 [key: string]: unknown;
             };
+        };
+        PartsInputRequest: {
+            /** @description ids of lines and railways */
+            assets: number[];
+            /**
+             * @description parts of all of them together: the fewer, the longer they are
+             * @default 500
+             */
+            most: number;
         };
         Passkey: {
             readonly id: number;
@@ -7048,7 +7057,7 @@ export interface components {
             /** @description of a support: the line of the highest voltage that it carries */
             line: number | null;
             /**
-             * @description as picked, else the asset's centre
+             * @description as picked, the middle between the ends of a stretch, else the asset's centre
              * @example [
              *       9.52,
              *       47.14
@@ -9727,6 +9736,7 @@ export type Organisation = components['schemas']['Organisation'];
 export type Origin = components['schemas']['Origin'];
 export type OriginEnum = components['schemas']['OriginEnum'];
 export type ParametersRequest = components['schemas']['ParametersRequest'];
+export type PartsInputRequest = components['schemas']['PartsInputRequest'];
 export type Passkey = components['schemas']['Passkey'];
 export type PasskeyInputRequest = components['schemas']['PasskeyInputRequest'];
 export type PasskeyList = components['schemas']['PasskeyList'];

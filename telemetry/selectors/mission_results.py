@@ -49,7 +49,7 @@ def _row(number: int, target: TargetOnRecord, external_ids: dict[int, str]) -> R
     row, visit, outcome = target.row, target.visit, target.outcome
     asset = row.asset
     line = asset.line if asset is not None and asset.line_id is not None else asset if asset is not None and asset.kind == "line" else None
-    place = row.position or (asset.centre if asset is not None else None)
+    place = row.place
     return ResultRow(
         number=number,
         asset_id=row.asset_id,

@@ -77,7 +77,7 @@ class ResultPageSerializer(serializers.Serializer):
 def result_json(target: Any, reference: AssetReference | None) -> dict[str, Any]:
     """Return a result. `target` is a row of selectors.results, `reference` the organisation's reference to its asset."""
     mission, asset = target.mission, target.asset
-    at = target.position or (asset.centre if asset is not None else None)
+    at = target.place
     return {
         "id": target.pk,
         "mission": {

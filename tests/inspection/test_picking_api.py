@@ -316,6 +316,22 @@ def test_a_tower_has_no_parts(client: Client) -> None:
     assert client.get(f"/api/v1/assets/{tower().pk}/parts").status_code == 404
 
 
+def test_several_lines_have_no_more_parts_together_than_asked_for(client: Client) -> None:
+    long = line_over(row_of_towers(*(10.0 + 0.01 * number for number in range(31))), length_m=18_700.0)
+    short = line_over(row_of_towers(10.0, 10.002, lat=56.1), length_m=125.0)
+    track = railway(*((10.0 + 0.01 * number, 56.2) for number in range(11)), length_m=6_240.0)
+    for most in (500, 12, 4):
+        answer = post(client, "parts", {"assets": [long.pk, short.pk, track.pk], "most": most}).json()
+        assert {part["line"]["id"] for part in answer["parts"]} == {long.pk, short.pk, track.pk}
+        assert len(answer["parts"]) <= most
+        assert answer["length_m"] == pytest.approx(18_720 + 125 + 6_240, rel=0.01)
+
+
+@pytest.mark.parametrize("body", [{}, {"assets": []}, {"assets": [999_999]}, {"assets": ["x"]}, {"assets": [1], "most": 0}])
+def test_parts_of_what_is_no_line_are_refused(client: Client, body: dict[str, Any]) -> None:
+    assert post(client, "parts", body).status_code == 400
+
+
 # --- bridges of a railway ----------------------------------------------------------------------------------------------------------
 
 

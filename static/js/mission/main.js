@@ -166,8 +166,7 @@ const finder = mountFinder({
   box: () => map.box(),
   show: (feature) => map.show(targetOfFeature(feature)),
   add: (feature) => void actions.addWhole(targetOfFeature(feature)),
-  addAll: (features) =>
-    actions.addMany(features.map(targetOfFeature), (added) => t("{added} from the search.", { added })),
+  addAll: (features) => void actions.addFound(features.map(targetOfFeature)),
   things: () =>
     standingUavs(store.state).map(({ name, base_name, position }) => ({
       name,

@@ -83,16 +83,27 @@ export function targetOfRow({ id, kind, centre, ...properties }) {
  */
 export function targetOfPart({ line, label, stretch, length_m }) {
   const [[west, south], [east, north]] = stretch;
-  const centre = [(west + east) / 2, (south + north) / 2];
+  const centre = Math.abs(east - west) > 180 ? [west, south] : [(west + east) / 2, (south + north) / 2];
   return targetOf({ id: line.id, kind: line.kind, properties: { ...line, label, length_m }, centre, stretch });
 }
 
+const PART = /^(.*), km ([\d.]+)–([\d.]+)$/s;
+
+/** The label of the line that a part belongs to: the server calls parts "E402, km 9.8–10.8". @param {string} label */
+export const lineOfPart = (label) => PART.exec(label)?.[1] ?? label;
+
 /**
- * The label of the line that a part belongs to: the server calls parts "E402, km 9.8–10.8".
+ * The label of several parts of one line: "E402, km 0.0–10.8" where each begins at the end of another, else that of the line.
  *
- * @param {string} label
+ * @param {string[]} labels
  */
-export const lineOfPart = (label) => label.replace(/, km [\d.]+–[\d.]+$/, "");
+export function labelOfParts(labels) {
+  const extents = labels.map((label) => PART.exec(label)?.slice(2).map(Number) ?? [Number.NaN, Number.NaN]);
+  extents.sort(([a], [b]) => a - b);
+  const isWhole = extents.every(([from], at) => at === 0 || from === extents[at - 1][1]);
+  const line = lineOfPart(labels[0]);
+  return isWhole ? `${line}, km ${extents[0][0].toFixed(1)}–${extents[extents.length - 1][1].toFixed(1)}` : line;
+}
 
 /** Whether it is a line or railway from end to end. @param {Pick<PickedTarget, "kind" | "position" | "stretch">} target */
 export const isWholeLine = (target) => isWhole(target) && !target.stretch;

@@ -25,3 +25,25 @@ test("a long list has its targets in groups by line, as they stand one after the
   assert.deepEqual(keys.slice(0, 3), ["1 0", "null 0", "2 0"]);
   assert.deepEqual(lineGroups(on(1, 12)), []);
 });
+
+test("parts of a line are a group in any list, of each route one", () => {
+  const part = (number) => ({
+    key: `p${number}`,
+    asset: 9,
+    line: null,
+    stretch: [],
+    label: `E402, km ${number}.0–${number + 1}.0`,
+    detail: "",
+  });
+  const parts = [0, 1, 2, 3, 4, 5, 6].map(part);
+  const groups = lineGroups(parts, (key) => (key < "p3" ? 0 : 1));
+  assert.deepEqual(
+    groups.map(({ words, keys, isOfParts }) => [words, keys.length, isOfParts]),
+    [
+      ["E402, km 0.0–3.0", 3, true],
+      ["E402, km 3.0–7.0", 4, true],
+    ],
+  );
+  assert.equal(lineGroups([parts[0], parts[1], parts[5]])[0].words, "E402");
+  assert.deepEqual(lineGroups(parts.slice(0, 2)), []);
+});

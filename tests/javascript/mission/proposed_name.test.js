@@ -11,6 +11,15 @@ test("a mission is proposed a name from what is picked", () => {
   assert.equal(proposedName([tower("1"), tower("2")]), "138 kV AEP: 2 towers");
   const bridge = { kind: "bridge", label: "Bridge w42", detail: "carries a road" };
   assert.equal(proposedName([tower("1"), bridge, tower("2", "110 kV")]), "2 towers, 1 bridge");
+  const part = (number, asset = 7) => ({
+    kind: "line",
+    asset,
+    label: `E402, km ${number}.0–${number + 1}.0`,
+    stretch: [],
+    detail: "",
+  });
+  assert.equal(proposedName([part(0), part(1)]), "E402");
+  assert.equal(proposedName([part(0), part(1), part(0, 8), tower("1")]), "1 tower, 2 lines");
   assert.ok(proposedName([tower("x".repeat(500))]).length <= 200);
 });
 

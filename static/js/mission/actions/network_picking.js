@@ -148,7 +148,7 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
   async function partsOf(line, ends) {
     const asked = ends ? `?ends=${ends.flat().join(",")}` : "";
     const { data } = /** @type {Answer<LinePartsOutput>} */ (await get(`/assets/${line}/parts${asked}`));
-    return data.length_m < SHARED_FROM_M ? [] : data.parts;
+    return data.parts;
   }
 
   /** @param {PickedTarget} target a line or railway from end to end; any other is added as it is */
@@ -159,10 +159,10 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
       return;
     }
     try {
-      const parts = await partsOf(asset);
-      if (parts.length < 2) addTargets([target]);
+      const parts = sharedParts(await partsOf(asset));
+      if (!parts) addTargets([target]);
       else {
-        const added = addTargets(parts.map(picks.targetOfPart));
+        const added = addTargets(parts);
         if (added)
           toast(sharedWords(target.label, parts.length), {
             label: t("One UAV flies it whole"),
@@ -174,16 +174,39 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
     }
   }
 
+  /** What a search has found: its lines in parts, as far as a mission takes them. @param {PickedTarget[]} targets */
+  async function addFound(targets) {
+    const lines = targets.filter((target) => target.asset !== null && picks.isWholeLine(target));
+    const others = targets.filter((target) => !lines.includes(target));
+    const most = picks.MAX_TARGETS - selection().targets.length - others.length;
+    const words = (/** @type {string} */ added) => t("{added} from the search.", { added });
+    if (!lines.length || most < lines.length) {
+      addMany(targets, words);
+      return;
+    }
+    try {
+      const assets = lines.map(({ asset }) => asset);
+      const { data } = /** @type {Answer<LinePartsOutput>} */ (await post("/assets/parts", { assets, most }));
+      const shared = lines.flatMap(
+        (target) => sharedParts(data.parts.filter(({ line }) => line.id === target.asset)) ?? [target],
+      );
+      addMany([...others, ...shared], words);
+    } catch (error) {
+      failed(t("The line could not be read."), error);
+    }
+  }
+
   /** Flown along: the lines that the path follows, the long ones in parts. @param {StretchPart[]} followed */
   async function addStretch(followed) {
     try {
       const divided = await Promise.all(
-        followed.map(async (part) => {
-          const parts = part.length_m < SHARED_FROM_M ? [] : await partsOf(part.line.id, part.stretch);
-          return parts.length ? parts : [part];
-        }),
+        followed.map(async (part) =>
+          part.length_m < SHARED_FROM_M
+            ? [picks.targetOfPart(part)]
+            : (await partsOf(part.line.id, part.stretch)).map(picks.targetOfPart),
+        ),
       );
-      addMany(divided.flat().map(picks.targetOfPart), (added) => t("{added} to fly along.", { added }));
+      addMany(divided.flat(), (added) => t("{added} to fly along.", { added }));
     } catch (error) {
       failed(t("The line could not be read."), error);
     }
@@ -193,10 +216,9 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
   async function share({ asset, key, label }) {
     if (asset === null) return;
     try {
-      const parts = await partsOf(asset);
-      if (parts.length < 2) toast(t("{name} is too short to share.", { name: label }));
-      else if (change(picks.withParts(selection(), key, parts.map(picks.targetOfPart))))
-        toast(sharedWords(label, parts.length), undo());
+      const parts = sharedParts(await partsOf(asset));
+      if (!parts) toast(t("{name} is too short to share.", { name: label }));
+      else if (change(picks.withParts(selection(), key, parts))) toast(sharedWords(label, parts.length), undo());
     } catch (error) {
       failed(t("The line could not be read."), error);
     }
@@ -209,9 +231,15 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
       toast(t("One UAV flies {name} from end to end.", { name: picks.lineOfPart(label) }), undo());
   }
 
-  return { addWhole, addStretch, share, flyWhole };
+  return { addWhole, addFound, addStretch, share, flyWhole };
+}
+
+/** The targets of a line's parts; null where it is too short to share. @param {StretchPart[]} parts */
+function sharedParts(parts) {
+  const length_m = parts.reduce((sum, part) => sum + part.length_m, 0);
+  return parts.length < 2 || length_m < SHARED_FROM_M ? null : parts.map(picks.targetOfPart);
 }
 
 /** @param {string} name @param {number} count */
 const sharedWords = (name, count) =>
-  tn(count, "{name}: {count} part, which UAVs share.", "{name}: {count} parts, which UAVs share.", { name });
+  tn(count, "{name} is one part.", "{name} is divided into {count} parts that UAVs share.", { name });

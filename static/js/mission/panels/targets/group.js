@@ -3,7 +3,7 @@
 import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { tn } from "../../../text.js";
-import { lineOfPart } from "../../selection.js";
+import { labelOfParts } from "../../selection.js";
 
 /** @import { PickedTarget } from "../../types.d.ts" */
 /** @import { RowState } from "./row.js" */
@@ -24,17 +24,24 @@ const MIN_IN_GROUP = 3;
 export function lineGroups(targets, routeOf = () => undefined) {
   /** @type {LineGroup[]} */
   const runs = [];
+  /** @type {string[][]} of the targets of each run */
+  const labels = [];
   let before = "";
   for (const { key, asset, line, stretch, detail, label } of targets) {
     const isOfParts = Boolean(stretch);
     const on = isOfParts ? asset : (line ?? null);
     const run = on === null ? "" : [on, isOfParts, routeOf(key)].join(" ");
-    if (run && run === before) runs.at(-1)?.keys.push(key);
-    else if (on !== null)
-      runs.push({ key, line: on, words: isOfParts ? lineOfPart(label) : detail || label, keys: [key], isOfParts });
+    if (run && run === before) {
+      runs[runs.length - 1].keys.push(key);
+      labels[labels.length - 1].push(label);
+    } else if (on !== null) {
+      runs.push({ key, line: on, words: detail || label, keys: [key], isOfParts });
+      labels.push([label]);
+    }
     before = run;
   }
-  return runs.filter(
+  const named = runs.map((run, at) => (run.isOfParts ? { ...run, words: labelOfParts(labels[at]) } : run));
+  return named.filter(
     ({ keys, isOfParts }) => keys.length >= MIN_IN_GROUP && (isOfParts || targets.length >= MIN_TARGETS),
   );
 }
