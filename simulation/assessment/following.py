@@ -104,17 +104,25 @@ class AssessedVisit:
 
 def visits_of(route: AssessedRoute, *, within_m: float) -> list[AssessedVisit]:
     """Return the visit of every waypoint of the route, in order."""
-    found = []
+    found: list[AssessedVisit] = []
     for number, flown in enumerate(route.flights):
+        first, before = 0, None
         for waypoint in flown.flight.waypoints:
-            found.append(_visit(waypoint, number, flown.track, within_m))
+            first = first if before is not None and _is_same_place(before, waypoint) else waypoint.sequence
+            found.append(_visit(waypoint, number, flown.track, within_m, first))
+            before = waypoint
     return found
 
 
-def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, within_m: float) -> AssessedVisit:
+def _is_same_place(one: FrozenWaypoint, other: FrozenWaypoint) -> bool:
+    return one.position == other.position and one.altitude_relative_m == other.altitude_relative_m
+
+
+def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, within_m: float, first: int) -> AssessedVisit:
+    """first: the first of the waypoints one after another at this very place, such as where a stretch begins at the end of another."""
     if track is None or not len(track):
         return AssessedVisit(waypoint, number, None, None, None, 0.0, None)
-    rows = np.flatnonzero(track.is_in_air & _about(track, waypoint.sequence))
+    rows = np.flatnonzero(track.is_in_air & _about(track, first, waypoint.sequence))
     if not len(rows):
         return AssessedVisit(waypoint, number, None, None, None, 0.0, None)
     frame = LocalFrame.around(*waypoint.position)
@@ -136,10 +144,13 @@ def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, with
     )
 
 
-def _about(track: FlownTrack, sequence: int) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """Return the rows from the leg to the waypoint to the leg after it, as a route may pass a place twice; none without such legs."""
-    own: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (track.waypoint == sequence) | (track.waypoint == sequence + 1)
-    return own if (track.waypoint == sequence).any() else np.zeros(len(track), dtype=bool)
+def _about(track: FlownTrack, first: int, last: int) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    """Return the rows from the leg to the waypoints `first` to `last` to the leg after them, as a route may pass a place twice.
+
+    None without a leg to them: legs between waypoints at one place take no time.
+    """
+    to_them: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (track.waypoint >= first) & (track.waypoint <= last)
+    return to_them | (track.waypoint == last + 1) if to_them.any() else np.zeros(len(track), dtype=bool)
 
 
 def _between(places: np.ndarray[tuple[int, ...], np.dtype[np.float64]], nearest: int) -> tuple[float, float]:

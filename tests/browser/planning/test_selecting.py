@@ -111,6 +111,36 @@ def test_a_stretch_between_two_towers_is_taken_tower_by_tower_or_flown_along(vis
     expect(page.get_by_role("radio", name="Point")).to_be_checked()
 
 
+def test_a_long_line_is_shared_by_uavs_in_parts_or_flown_whole_by_one(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    line, _ = longest_line(page)
+    parts = asks(page, f"/assets/{line['id']}/parts")["parts"]
+    assert len(parts) > 2
+    searches(page, line["properties"]["osm"])
+    page.keyboard.press("Enter")
+    group = page.get_by_role("button", name=re.compile(rf"km 0\.0–[\d.]+ ?{len(parts)} parts$"))
+    expect(group).to_have_attribute("aria-expanded", "false")
+    expect(page.locator("#target-count")).to_have_text(f"{len(parts)}")
+    expect(page.get_by_text(f"is divided into {len(parts)} parts that UAVs share.")).to_be_visible()
+
+    page.get_by_role("button", name="One UAV flies it whole").click()
+    expect(rows(page)).to_have_count(1)
+    expect(rows(page)).to_contain_text("whole line")
+    page.keyboard.press("Control+z")
+    expect(group).to_be_visible()
+    page.keyboard.press("Control+Shift+z")
+    page.get_by_role("button", name=re.compile("^Task, priority of ")).click()
+    page.get_by_role("button", name="Share it among UAVs").click()
+    expect(group).to_be_visible()
+    group.click()
+    expect(rows(page)).to_have_count(len(parts))
+    assert targets(page) == [part["label"] for part in parts]
+    page.get_by_role("button", name=re.compile("^Task, priority of ")).first.click()
+    page.get_by_role("button", name="One UAV flies it whole").click()
+    expect(rows(page)).to_have_count(1)
+    assert targets(page) == [line["properties"]["label"]]
+
+
 @pytest.mark.long
 def test_every_bridge_of_a_railway_is_picked_from_its_row(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)

@@ -4,11 +4,13 @@ from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import replace
 from datetime import timedelta
+from itertools import pairwise
 from unittest import mock
 
 import pytest
 from django.utils import timezone
 
+from inspection.geodesy import LonLat
 from inspection.selectors.planning import planning_read
 from inspection.services import build_graph
 from inspection.services.ground import mark_ground_changed
@@ -78,6 +80,21 @@ def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: 
     leaning = [max(map(abs, track.flights[0]["pitch_deg"])) for track in tracks]
     assert all(1.0 < most_deg < 60.0 for most_deg in leaning)  # it leans to move, and never falls over
     assert AuditEntry.objects.filter(action="rehearse", subject_id=str(mission.pk), actor=person).count() == 1
+
+
+def test_a_line_in_parts_is_flown_part_by_part_and_each_counts(here: World, person: User) -> None:
+    """Where one part begins at the end of another, two waypoints are at one place."""
+    places = [LonLat(*tower.centre.coords) for tower in here.towers]
+    parts = [TargetRequest(here.line.pk, stretch=ends) for ends in ((places[0], places[2]), (places[2], places[3]), (places[3], places[5]))]
+    mission = planned(person, fleet("Tern"), parts)
+    flown = plan_to_fly(loaded(mission)).routes[0].route.waypoints
+    assert sum(one.position == other.position for one, other in pairwise(flown)) >= 1
+    run = rehearsed(mission, person, "calm").runs.get()
+    targets = run.assessment["routes"][0]["targets"]
+    assert run.level == "pass", run.assessment["findings"]
+    assert sorted((target["target"], target["is_reached"], target["closest_m"] < 2.0) for target in targets) == [
+        (number, True, True) for number in range(3)
+    ]
 
 
 def test_photos_are_kept_with_the_pose_of_the_lens_of_the_types_camera(here: World, person: User) -> None:

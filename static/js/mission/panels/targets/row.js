@@ -121,7 +121,7 @@ function checkBox({ label }, { toggle, chooseUpTo }) {
 
 /** @param {HTMLElement} row @param {PickedTarget} target @param {RowState} state */
 export function refreshRow(row, target, { place, isMissed, index, arrival, isChosen, canPlan, selection, wished }) {
-  const pill = find(row, ".pill", HTMLElement);
+  const pill = find(row, ":scope > .pill", HTMLElement);
   pill.className = `pill ${place ? `route-${routeNumber(place.sequence)}` : isMissed ? "missed" : "waiting"}`;
   pill.textContent = place ? `${place.letter}${place.number}` : isMissed ? "×" : `${index + 1}`;
   pill.setAttribute(
