@@ -1,6 +1,5 @@
 """Selecting many assets at once: by a list, in an area, the supports of a line, the bridges of a railway."""
 
-import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -9,14 +8,14 @@ from typing import Any
 
 import numpy as np
 import shapely
-from django.contrib.gis.geos import GEOSGeometry, LineString
+from django.contrib.gis.geos import GEOSGeometry, LineString, Point
 from django.contrib.postgres.fields import ArrayField
 from django.db import connection
 from django.db.models import F, Func, Q, QuerySet, TextField, Value
 from django.db.models.functions import Lower
 
-from inspection.geodesy import LonLat
-from inspection.geodesy.stretches import FloatArray, LinePart, nearest_on_line, part_between, part_count, parts_of_line
+from inspection.geodesy import LonLat, path_length_m
+from inspection.geodesy.stretches import FloatArray, IntArray, LinePart, nearest_on_line, part_between, parts_of_line
 from inspection.models import Asset, AssetKind
 from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
 from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order, vertices_at_supports
@@ -164,18 +163,32 @@ def parts_of_asset(asset: Asset, part_m: float, ends: Sequence[LonLat] | None = 
     Raises NotOneLine.
     """
     course = _course(asset)
-    is_cut = asset.kind == AssetKind.LINE and part_count(asset.length_m or math.inf, part_m) > 1
-    at = vertices_at_supports(*_supports_and_line(asset)) if is_cut else ()
     stretch = None if ends is None else (nearest_on_line(course, ends[0]), nearest_on_line(course, ends[1]))
-    return parts_of_line(course, part_m, ends=stretch, at=at)
+    return parts_of_line(course, part_m, ends=stretch, at=_cuts(asset))
 
 
-def part_length_m(lengths_m: Sequence[float], most: int) -> float:
-    """Return how long parts are, metres, so that lines of these lengths have at most so many; no more lines than that are expected."""
-    part_m = DEFAULT_PART_M
-    while part_m < max(lengths_m, default=0.0) and sum(part_count(length_m, part_m) for length_m in lengths_m) > most:
-        part_m *= LONGER
-    return part_m
+def _cuts(asset: Asset) -> Sequence[int] | IntArray:
+    """Return the vertices at which it may be cut; none: at all of them."""
+    return vertices_at_supports(*_supports_and_line(asset)) if asset.kind == AssetKind.LINE else ()
+
+
+def parts_of_assets(lines: Sequence[Asset], most: int, area: GEOSGeometry | None = None) -> list[tuple[Asset, LinePart]]:
+    """Return the parts of several lines and railways, each with its line, at most so many unless there are more lines.
+
+    area: only parts with an end in it count. What is not one line is left out, as it cannot be flown along.
+    """
+    flown = [(line, _course(line), _cuts(line)) for line in lines if isinstance(line.geometry, LineString)]
+    longest_m, part_m = max((path_length_m(course) for _line, course, _cut in flown), default=0.0), DEFAULT_PART_M
+    while True:
+        found = [
+            (line, part)
+            for line, course, cuts in flown
+            for part in parts_of_line(course, part_m, at=cuts)
+            if area is None or any(area.intersects(Point(*end, srid=4326)) for end in (part.start, part.end))
+        ]
+        if len(found) <= most or part_m > longest_m:
+            return found
+        part_m *= max(LONGER, len(found) / most)
 
 
 def label_between(line: Asset, start: LonLat, end: LonLat) -> str:
@@ -286,8 +299,8 @@ __all__ = [
     "assets_in_area",
     "bridges_of_railway",
     "label_between",
-    "part_length_m",
     "parts_of_asset",
+    "parts_of_assets",
     "plain_ref",
     "stretch_along_lines",
     "supports_between",

@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import islice
 from typing import Any
 
+from django.contrib.gis.geos import GEOSGeometry
 from django.http import Http404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, extend_schema
@@ -57,6 +58,19 @@ def _support_of(request: Request, end: WholeNumber) -> Asset | None:
     return support
 
 
+def _area_of(polygon: dict[str, Any]) -> GEOSGeometry:
+    ring = [position[:2] for position in polygon["coordinates"][0]]
+    if not all(-540.0 <= longitude <= 540.0 and -90.0 <= latitude <= 90.0 for longitude, latitude in ring):
+        raise invalid("polygon", _("A position is not on the globe."))
+    try:
+        area = picking.area_drawn(ring)
+    except picking.TooTangled as error:
+        raise invalid("polygon", _("It crosses itself too often.")) from error
+    if area is None:
+        raise invalid("polygon", _("It encloses nothing."))
+    return area
+
+
 class AssetLookup(APIView):
     write_roles = frozenset(Role)
 
@@ -97,15 +111,7 @@ class AssetsWithin(APIView):
     def post(self, request: Request) -> Response:
         body = WithinInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        ring = [position[:2] for position in body.validated_data["polygon"]["coordinates"][0]]
-        if not all(-540.0 <= longitude <= 540.0 and -90.0 <= latitude <= 90.0 for longitude, latitude in ring):
-            raise invalid("polygon", _("A position is not on the globe."))
-        try:
-            area = picking.area_drawn(ring)
-        except picking.TooTangled as error:
-            raise invalid("polygon", _("It crosses itself too often.")) from error
-        if area is None:
-            raise invalid("polygon", _("It encloses nothing."))
+        area = _area_of(body.validated_data["polygon"])
         kinds = body.validated_data.get("kinds") or [AssetKind.TOWER, AssetKind.BRIDGE]
         assets = picking.assets_in_area(area, kinds)
         rows = list(assets.select_related("line").only(*FIELDS_OF_AN_ASSET)[: picking.MAX_IN_AN_AREA])
@@ -206,16 +212,11 @@ class PartsOfLines(APIView):
         for place, key in enumerate(body.validated_data["assets"]):
             if key not in lines:
                 raise invalid(f"assets.{place}", _("There is no such line or railway."))
-        part_m = picking.part_length_m([lines[key].length_m or 0.0 for key in asked], body.validated_data["most"])
-        parts, length_m = [], 0.0
-        for key in asked:
-            try:
-                found = picking.parts_of_asset(lines[key], part_m)
-            except picking.NotOneLine:
-                continue  # it cannot be flown along
-            parts += [_part_of(lines[key], part) for part in found]
-            length_m += sum(part.length_m for part in found)
-        return Response({"parts": parts, "length_m": length_m})
+        polygon = body.validated_data.get("polygon")
+        found = picking.parts_of_assets(
+            [lines[key] for key in asked], body.validated_data["most"], None if polygon is None else _area_of(polygon)
+        )
+        return Response({"parts": [_part_of(*part) for part in found], "length_m": sum(part.length_m for _line, part in found)})
 
 
 class RailwayBridgesView(APIView):

@@ -4477,6 +4477,8 @@ export interface components {
              * @default 500
              */
             most: number;
+            /** @description only parts with an end in it; as of POST /assets/within */
+            polygon?: components["schemas"]["DrawnAreaRequest"];
         };
         Passkey: {
             readonly id: number;

@@ -327,6 +327,18 @@ def test_several_lines_have_no_more_parts_together_than_asked_for(client: Client
         assert answer["length_m"] == pytest.approx(18_720 + 125 + 6_240, rel=0.01)
 
 
+def test_of_lines_in_an_area_only_the_parts_with_an_end_in_it_come(client: Client) -> None:
+    way = line_over(row_of_towers(*(10.0 + 0.01 * number for number in range(31))), length_m=18_700.0)
+    elsewhere = line_over(row_of_towers(11.0, 11.05), length_m=3_100.0)
+    ring = [[10.095, 55.9], [10.205, 55.9], [10.205, 56.1], [10.095, 56.1]]
+    body = {"assets": [way.pk, elsewhere.pk], "polygon": {"type": "Polygon", "coordinates": [ring]}}
+    parts = post(client, "parts", body).json()["parts"]
+    assert {part["line"]["id"] for part in parts} == {way.pk}
+    assert all(any(10.095 <= lon <= 10.205 for lon, _ in part["stretch"]) for part in parts)
+    assert parts[0]["stretch"][0][0] <= 10.1 and parts[-1]["stretch"][1][0] >= 10.2
+    assert len(post(client, "parts", body | {"most": 3}).json()["parts"]) <= 3
+
+
 @pytest.mark.parametrize("body", [{}, {"assets": []}, {"assets": [999_999]}, {"assets": ["x"]}, {"assets": [1], "most": 0}])
 def test_parts_of_what_is_no_line_are_refused(client: Client, body: dict[str, Any]) -> None:
     assert post(client, "parts", body).status_code == 400

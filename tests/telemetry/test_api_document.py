@@ -28,6 +28,7 @@ SECTIONS = [
     "Errors",
     "Retries",
     "If-Match",
+    "Lines",
     "External ids",
     "Results",
     "Alerts",

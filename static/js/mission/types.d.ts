@@ -383,6 +383,8 @@ export interface Caught {
   chosen: PickedAsset[];
   /** towers of lines that are picked whole: left out */
   covered: number;
+  /** the area that was drawn: longitude, latitude */
+  ring: number[][];
 }
 
 export type Tool = "point" | "box" | "lasso" | "line" | "stretch" | "place" | "rally" | "zone";

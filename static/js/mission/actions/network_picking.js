@@ -4,7 +4,7 @@ import { get, post } from "../../api.js";
 import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import * as picks from "../selection.js";
-import { notPickedYet } from "../targets/caught.js";
+import { linesOf, notPickedYet } from "../targets/caught.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { BridgesOutput, LinePartsOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */
@@ -45,7 +45,7 @@ function createAreaPicking({ store, problem, failed, selection }, addMany) {
         );
       } else if (!data.count) toast(t("No tower and no bridge stands in {area}.", { area: from }));
       else if (!rows.length) toast(t("Already picked."));
-      else store.update({ caught: { rows, chosen: rows, covered } });
+      else store.update({ caught: { rows, chosen: rows, covered, ring } });
     } catch (error) {
       failed(t("The area could not be read."), error);
     }
@@ -72,6 +72,22 @@ function createAreaPicking({ store, problem, failed, selection }, addMany) {
       store.update({ caught: null, tool: "point" });
       if (caught)
         addMany(rowsToTargets(caught.chosen), (added) => t("{added} from {area}.", { added, area: t("the area") }));
+    },
+    /** Instead of the towers, add the parts inside the area of the lines that they carry. */
+    async addCaughtLines() {
+      const { caught } = store.state;
+      if (!caught) return;
+      const polygon = { type: "Polygon", coordinates: [caught.ring] };
+      const most = Math.max(1, picks.MAX_TARGETS - selection().targets.length);
+      try {
+        const { data } = /** @type {Answer<LinePartsOutput>} */ (
+          await post("/assets/parts", { assets: linesOf(caught.chosen), most, polygon })
+        );
+        store.update({ caught: null, tool: "point" });
+        addMany(data.parts.map(picks.targetOfPart), (added) => t("{added} to fly along.", { added }));
+      } catch (error) {
+        failed(t("The line could not be read."), error);
+      }
     },
     dropCaught: () => store.update({ caught: null, tool: "point" }),
   };

@@ -4,7 +4,7 @@ import { h } from "../../dom.js";
 import { t, tn } from "../../text.js";
 import { numberText } from "../../units.js";
 import { MAX_TARGETS } from "../selection.js";
-import { caughtWords, groupsOf, rowsWithout } from "../targets/caught.js";
+import { caughtWords, groupsOf, linesOf, rowsWithout } from "../targets/caught.js";
 
 /** @import { Group, GroupName } from "../targets/caught.js" */
 /** @import { Caught, MissionActions, MissionStore } from "../types.d.ts" */
@@ -23,10 +23,11 @@ export function mountCaught(frame, store, actions) {
   const groups = h("div", { class: "caught-groups" });
   const why = h("p", { class: "caption", role: "status" });
   const add = h("button", { type: "submit", class: "button primary" });
+  const along = h("button", { type: "button", class: "button", onclick: () => void actions.addCaughtLines() });
   const cancel = h("button", { type: "button", class: "button", onclick: actions.dropCaught }, t("Cancel"));
   /** @type {Element | null} */
   let opener = null;
-  const form = h("form", {}, title, covered, groups, why, h("div", { class: "caught-acts" }, add, cancel));
+  const form = h("form", {}, title, covered, groups, why, h("div", { class: "caught-acts" }, add, along, cancel));
   const panel = h(
     "div",
     { class: "caught float", role: "dialog", "aria-labelledby": "caught-title", hidden: true },
@@ -78,6 +79,9 @@ export function mountCaught(frame, store, actions) {
     title.textContent = caughtWords(caught.rows);
     add.textContent = tn(count, "Add {count} target", "Add {count} targets");
     add.disabled = count === 0 || count > room;
+    const lines = linesOf(caught.chosen).length;
+    along.hidden = lines === 0;
+    along.textContent = tn(lines, "Fly along its line", "Fly along their {count} lines");
     why.textContent = count > room ? t("A mission takes {most} targets.", { most: numberText(MAX_TARGETS) }) : "";
     if (isNew) (add.disabled ? cancel : add).focus({ preventScroll: true });
   });

@@ -79,10 +79,15 @@ function groupsBy(name, rows) {
 /** Rows in none of the groups that are off. @param {PickedAsset[]} rows @param {Set<string>} off */
 export const rowsWithout = (rows, off) => rows.filter((row) => NAMES.every((name) => !off.has(IN[name](row))));
 
+/** The lines that the towers carry. @param {PickedAsset[]} rows */
+export const linesOf = (rows) => [
+  ...new Set(rows.flatMap(({ kind, line }) => (kind === "tower" && line !== null ? [line] : []))),
+];
+
 /** "142 towers on 5 lines, 16 bridges". @param {PickedAsset[]} rows */
 export function caughtWords(rows) {
   const towers = rows.filter(({ kind }) => kind === "tower");
-  const lines = new Set(towers.flatMap(({ line }) => (line === null ? [] : [line]))).size;
+  const lines = linesOf(towers).length;
   if (!lines) return countedByKind(rows);
   const onLines = t("{towers} on {lines}", {
     towers: countedByKind(towers),
