@@ -9,6 +9,7 @@ import math
 import numpy as np
 from numba import njit
 
+from planning.problem import IntArray
 from planning.solver.exchanges import NONE, draw_move, make
 from planning.solver.insertion import recreate
 from planning.solver.objective import cost_of, cost_of_routes, is_better, is_wanted, longest_of
@@ -60,6 +61,25 @@ def construct(problem: ProblemArrays, work: Workspace, power: int, tries: int) -
         if number == 0 or is_better(problem, plan, work.best):
             copy_plan(plan, work.best)
     copy_plan(work.best, work.plan)
+
+
+@njit(cache=True, nogil=True)
+def begin_at(problem: ProblemArrays, work: Workspace, visit: IntArray, size: IntArray) -> bool:
+    """Make a plan the current one, and the best one, if it keeps all limits and is better than the best; returns whether it was.
+
+    visit (u, t): of each UAV the first size[u] are its visits.
+    """
+    plan = work.plan
+    plan.uav_of[:] = -1
+    for uav in range(len(size)):
+        plan.visit[uav, : size[uav]] = visit[uav, : size[uav]]
+        plan.size[uav] = size[uav]
+    work.is_saved[:] = True
+    if _is_whole(problem, work) and is_better(problem, plan, work.best):
+        copy_plan(plan, work.best)
+        return True
+    copy_plan(work.best, plan)
+    return False
 
 
 @njit(cache=True, nogil=True)

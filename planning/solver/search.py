@@ -12,7 +12,7 @@ from planning.problem import BoolArray, FloatArray, Problem, Routes, merit
 from planning.solver.lower_bounds import lower_bound
 from planning.solver.plan_state import Workspace, routes_of, values, workspace
 from planning.solver.problem_arrays import Arcs, ProblemArrays, problem_arrays_of
-from planning.solver.ruin_and_recreate import anneal, construct
+from planning.solver.ruin_and_recreate import anneal, begin_at, construct
 
 Stop = Callable[[], bool]
 CHAINS = 2
@@ -52,9 +52,14 @@ class Chain:
     routes: Routes  # the best so far; replaced as a whole, so that other threads may read it
 
     @classmethod
-    def begin(cls, arrays: ProblemArrays, seed: int, number: int) -> "Chain":
+    def begin(cls, arrays: ProblemArrays, seed: int, number: int, start: Routes) -> "Chain":
+        """start: a plan to go on from, if it is better than those that are constructed."""
         work = workspace(len(arrays.first_m), len(arrays.weight), seed + number, len(arrays.more_limit))
         construct(arrays, work, POWERS[0], CONSTRUCTIONS)
+        visit, size = np.zeros_like(work.plan.visit), np.zeros_like(work.plan.size)
+        for uav, route in enumerate(start):
+            visit[uav, : len(route)], size[uav] = route, len(route)
+        begin_at(arrays, work, visit, size)
         _, total_m, longest_s = values(arrays, work.best)
         flown = max(1, int(work.best.size.sum()))
         unit = longest_s * np.count_nonzero(work.best.size) / flown if arrays.is_makespan else total_m / flown
@@ -87,8 +92,9 @@ def best_found(
     search_s: float,
     stop: Stop,
     on_look: Callable[[float, Found], None],
+    start: Routes = (),
 ) -> Found:
-    """The best plan of all chains, and a bound that is worked out beside them.
+    """The best plan of all chains, and a bound that is worked out beside them; it is no worse than `start`, if that keeps all limits.
 
     Without a time to search each chain makes a fixed number of rounds, and the answer depends on the problem and the seed alone; with
     one they go on until it is over. `stop` is asked and `on_look` told the share of the search ten times a second.
@@ -114,7 +120,7 @@ def best_found(
     if search_s:
         timer.start()
     with ThreadPoolExecutor(CHAINS + 1, "search") as pool:
-        chains = list(pool.map(lambda number: Chain.begin(arrays, seed, number), range(CHAINS)))
+        chains = list(pool.map(lambda number: Chain.begin(arrays, seed, number, start), range(CHAINS)))
         first = _best(problem, chains)
         bounding = pool.submit(lower_bound, problem, usable, needed_m, first, seed=seed)
         flights = [pool.submit(fly, chain) for chain in chains]

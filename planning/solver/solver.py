@@ -5,6 +5,7 @@ from collections.abc import Callable
 from operation.reasons import Reason
 from planning.problem import BoolArray, FloatArray, Objective, Problem, Routes, Solution, Unassigned
 from planning.solver import exact
+from planning.solver.contraction import Reduced, chains_of, in_pieces
 from planning.solver.locks import reduced
 from planning.solver.lower_bounds import lower_bound
 from planning.solver.problem_arrays import Arcs
@@ -13,6 +14,8 @@ from planning.solver.search import Found, OnProgress, Progress, best_found
 from planning.solver.sorties import by_uav, joined, unfolded
 
 PROVEN_GAP = 1e-8  # the bound stays a hair below what it proves
+PIECES = (1, 2, 4, 8)  # of each line, one after another
+PIECES_SHARE = 0.4  # of the time of a search
 EXACT, SEARCH = "exact", "ruin and recreate"  # what Solution.method says
 
 Stop = Callable[[], bool]
@@ -73,20 +76,63 @@ def _solved(
     if not usable.any():
         routes = ((),) * len(problem.uavs)
         return routes, reasons(problem, needed_m, routes), None, EXACT
-    found = searched_plan(problem, usable, needed_m, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
+    start = _plan_of_pieces(problem, stop=stop, on_progress=on_progress, seed=seed, search_s=PIECES_SHARE * search_s)
+    rest_s = search_s if start is None else (1.0 - PIECES_SHARE) * search_s
+    found = searched_plan(problem, usable, needed_m, stop=stop, on_progress=on_progress, seed=seed, search_s=rest_s, start=start or ())
     return found.routes, reasons(problem, needed_m, found.routes), found.bound, SEARCH
 
 
+def _plan_of_pieces(problem: Problem, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float) -> Routes | None:
+    """Return the best plan found with the parts of each line flown in few pieces: first whole, then cut more and more often.
+
+    None where no target is a part of a line. What is too far for a UAV in such a piece is left out.
+    """
+    chains = chains_of(problem)
+    if not chains:
+        return None
+    routes: Routes | None = None
+    for most in PIECES:
+        coarse = in_pieces(problem, chains, most)
+        if coarse.problem.target_count == problem.target_count or stop():
+            break
+        start = None if routes is None else coarse.contracted(routes)
+        routes = coarse.expanded(_routes(coarse, start or (), stop, on_progress, seed, search_s / len(PIECES)))
+    return routes
+
+
+def _routes(coarse: Reduced, start: Routes, stop: Stop, on_progress: OnProgress, seed: int, search_s: float) -> Routes:
+    problem = coarse.problem
+    if problem.target_count <= exact.MAX_TARGETS:
+        return exact.proven_routes(Arcs.of(problem))[0]
+    needed_m = needed_range_m(problem)
+    tell = lambda reported: on_progress(_expanded(reported, coarse.expanded))  # noqa: E731
+    usable = reachable(problem, needed_m)
+    if not usable.any():
+        return ((),) * len(problem.uavs)
+    return searched_plan(problem, usable, needed_m, stop=stop, on_progress=tell, seed=seed, search_s=search_s, start=start).routes
+
+
 def searched_plan(
-    problem: Problem, usable: BoolArray, needed_m: FloatArray, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
+    problem: Problem,
+    usable: BoolArray,
+    needed_m: FloatArray,
+    *,
+    stop: Stop,
+    on_progress: OnProgress,
+    seed: int,
+    search_s: float,
+    start: Routes = (),
 ) -> Found:
-    """The best plan of the search; usable (u, v) says which UAV can fly which visit at all, needed_m (u, v) with what range."""
+    """The best plan of the search; usable (u, v) says which UAV can fly which visit at all, needed_m (u, v) with what range.
+
+    start: a plan to begin with.
+    """
     on_progress(Progress(0.0, Reason("looking_for_first_plan")))
 
     def on_look(share: float, found: Found) -> None:
         on_progress(Progress(min(share, 0.99), progress_message(problem, found.routes), found.routes, found.bound))
 
-    found = best_found(problem, usable, needed_m, seed=seed, search_s=search_s, stop=stop, on_look=on_look)
+    found = best_found(problem, usable, needed_m, seed=seed, search_s=search_s, stop=stop, on_look=on_look, start=start)
     on_progress(Progress(1.0, progress_message(problem, found.routes), found.routes, found.bound))
     return found
 

@@ -1,6 +1,7 @@
 """How closely a flight followed its route, and which targets it reached."""
 
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
@@ -106,23 +107,19 @@ def visits_of(route: AssessedRoute, *, within_m: float) -> list[AssessedVisit]:
     """Return the visit of every waypoint of the route, in order."""
     found: list[AssessedVisit] = []
     for number, flown in enumerate(route.flights):
-        first, before = 0, None
-        for waypoint in flown.flight.waypoints:
-            first = first if before is not None and _is_same_place(before, waypoint) else waypoint.sequence
-            found.append(_visit(waypoint, number, flown.track, within_m, first))
-            before = waypoint
+        for _place, here in groupby(flown.flight.waypoints, key=lambda waypoint: (waypoint.position, waypoint.altitude_relative_m)):
+            waypoints = list(here)
+            sequences = waypoints[0].sequence, waypoints[-1].sequence
+            found += [_visit(waypoint, number, flown.track, within_m, sequences) for waypoint in waypoints]
     return found
 
 
-def _is_same_place(one: FrozenWaypoint, other: FrozenWaypoint) -> bool:
-    return one.position == other.position and one.altitude_relative_m == other.altitude_relative_m
-
-
-def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, within_m: float, first: int) -> AssessedVisit:
-    """first: the first of the waypoints one after another at this very place, such as where a stretch begins at the end of another."""
+def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, within_m: float, here: tuple[int, int]) -> AssessedVisit:
+    """here: the first and the last of the waypoints one after another at this very place, such as where a stretch begins at the end of
+    another; a vehicle knows one of them alone, or reaches both at once."""
     if track is None or not len(track):
         return AssessedVisit(waypoint, number, None, None, None, 0.0, None)
-    rows = np.flatnonzero(track.is_in_air & _about(track, first, waypoint.sequence))
+    rows = np.flatnonzero(track.is_in_air & _about(track, *here))
     if not len(rows):
         return AssessedVisit(waypoint, number, None, None, None, 0.0, None)
     frame = LocalFrame.around(*waypoint.position)

@@ -11,9 +11,18 @@ let lit = null; // the zone that is ringed
 /** @param {Geometry[]} geometries */
 const featuresOf = (geometries) => geometries.map((geometry) => ({ type: "Feature", properties: {}, geometry }));
 
-/** @param {MapLibreMap} map @param {Geometry[]} geometries */
-export function update(map, geometries) {
-  setFeatures(map, "picked-shapes", featuresOf(geometries));
+/**
+ * Picked lines; in the colour of the route that inspects them, by its number, if there is one.
+ *
+ * @param {MapLibreMap} map
+ * @param {{ geometry: Geometry, route: number | null }[]} shapes
+ */
+export function update(map, shapes) {
+  setFeatures(
+    map,
+    "picked-shapes",
+    shapes.map(({ geometry, route }) => ({ type: "Feature", properties: route === null ? {} : { route }, geometry })),
+  );
 }
 
 /**

@@ -1,6 +1,7 @@
 /** Layers of the infrastructure and the zones, from the vector tiles. */
 
 import { t } from "../../text.js";
+import { routeColour } from "./page_layers.js";
 import { bandsOf, TILES, voltage } from "./voltages.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
@@ -192,7 +193,12 @@ function outlineLayers(palette) {
       type: "line",
       source: "picked-shapes",
       layout: { "line-cap": "round", "line-join": "round" },
-      paint: { "line-color": palette.select, "line-width": 1.75, "line-gap-width": 7 },
+      paint: {
+        "line-color": ["case", ["has", "route"], routeColour(palette), palette.select],
+        "line-width": ["case", ["has", "route"], 2.5, 1.75],
+        "line-gap-width": ["case", ["has", "route"], 11, 7],
+        "line-opacity": ["case", ["has", "route"], 0.65, 1],
+      },
     },
   ];
 }

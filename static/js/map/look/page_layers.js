@@ -3,8 +3,8 @@
 /** @import { DataDrivenPropertyValueSpecification, LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { Palette } from "../../domain/palette.js" */
 
-/** @param {Palette} palette */
-const routeColour = (palette) => [
+/** Of a feature by its `route`, from 1; -1: critical. @param {Palette} palette */
+export const routeColour = (palette) => [
   "match",
   ["get", "route"],
   -1,

@@ -170,24 +170,23 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
   /** @param {PickedTarget} target a line or railway from end to end; any other is added as it is */
   async function addWhole(target) {
     const { asset } = target;
-    if (asset === null || !picks.isWholeLine(target)) {
+    const isPicked = selection().targets.some(({ key }) => key === target.key);
+    if (asset === null || isPicked || !picks.isWholeLine(target)) {
       addTargets([target]);
       return;
     }
+    /** @type {PickedTarget[] | null} */
+    let parts = null;
     try {
-      const parts = sharedParts(await partsOf(asset));
-      if (!parts) addTargets([target]);
-      else {
-        const added = addTargets(parts);
-        if (added)
-          toast(sharedWords(target.label, parts.length), {
-            label: t("One UAV flies it whole"),
-            act: () => flyWhole(asset),
-          });
-      }
-    } catch (error) {
-      failed(t("The line could not be read."), error);
+      parts = sharedParts(await partsOf(asset));
+    } catch {
+      toast(t("{name} is picked whole: its parts could not be read.", { name: target.label }));
     }
+    if (addTargets(parts ?? [target]) && parts)
+      toast(sharedWords(target.label, parts.length), {
+        label: t("One UAV flies it whole"),
+        act: () => flyWhole(asset),
+      });
   }
 
   /** What a search has found: its lines in parts, as far as a mission takes them. @param {PickedTarget[]} targets */

@@ -1,8 +1,10 @@
 /** Lines that are picked as a whole, drawn once their shape is loaded, and the ring round the thing at the pointer. */
 
 import { get } from "../../api.js";
+import { routeNumber } from "../../domain/palette.js";
 import { piecesOf } from "../../map/click_router.js";
 import * as selectionLayer from "../../map/layers/selection.js";
+import { shownPlaces } from "../plan/plan_view.js";
 import { isWhole } from "../tasks.js";
 import { partOfLine } from "./line_part.js";
 
@@ -23,11 +25,10 @@ export function createPickedShapes(map, store) {
 
   /** @param {PickedTarget[]} targets */
   async function fetchShapes(targets) {
-    const wanted = targets.flatMap((target) =>
-      target.asset !== null && isWhole(target) && !shapes.has(target.asset) ? target.asset : [],
-    );
+    const lines = targets.flatMap((target) => (target.asset !== null && isWhole(target) ? target.asset : []));
+    const wanted = new Set(lines.filter((asset) => !shapes.has(asset)));
     await Promise.all(
-      wanted.map(async (asset) => {
+      [...wanted].map(async (asset) => {
         shapes.set(asset, null);
         try {
           const { data } = /** @type {Answer<AssetDetailFeature>} */ (await get(`/assets/${asset}`));
@@ -37,7 +38,7 @@ export function createPickedShapes(map, store) {
         }
       }),
     );
-    if (wanted.length) drawShapes(store.state);
+    if (wanted.size) drawShapes(store.state);
   }
 
   /** What of a line is picked, where its shape has been loaded. @param {PickedTarget} target */
@@ -46,11 +47,15 @@ export function createPickedShapes(map, store) {
     return shape && target.stretch ? partOfLine(shape, target.stretch) : shape;
   }
 
-  /** @param {Pick<MissionPageState, "selection">} state */
-  function drawShapes({ selection }) {
+  /** @param {Pick<MissionPageState, "selection" | "plan">} state */
+  function drawShapes(state) {
+    const { places } = shownPlaces(state);
     selectionLayer.update(
       map,
-      selection.targets.flatMap((target) => shapeOf(target) ?? []),
+      state.selection.targets.flatMap((target) => {
+        const [geometry, place] = [shapeOf(target), places.get(target.key)];
+        return geometry ? [{ geometry, route: place ? routeNumber(place.sequence) : null }] : [];
+      }),
     );
   }
 
@@ -86,7 +91,7 @@ export function createPickedShapes(map, store) {
     },
     /** Once the map has its style. */
     start() {
-      store.listen(["selection"], (state) => {
+      store.listen(["selection", "plan"], (state) => {
         drawShapes(state);
         void fetchShapes(state.selection.targets);
       });

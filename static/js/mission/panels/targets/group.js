@@ -2,7 +2,7 @@
 
 import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
-import { tn } from "../../../text.js";
+import { t, tn } from "../../../text.js";
 import { labelOfParts } from "../../selection.js";
 
 /** @import { PickedTarget } from "../../types.d.ts" */
@@ -64,8 +64,9 @@ export function withoutFolded(targets, groups, isFolded) {
  *
  * @param {() => void} changed
  * @param {number} most
+ * @param {((keys: string[]) => void) | null} remove targets; null for those who may not
  */
-export function createGroups(changed, most) {
+export function createGroups(changed, most, remove) {
   /** @type {Map<string, LineGroup>} by the key of the first target */
   let groups = new Map();
   /** @type {Map<number, boolean>} by line, where the user has decided */
@@ -98,18 +99,28 @@ export function createGroups(changed, most) {
         if (group) folded.set(group.line, !isFolded(group));
         changed();
       };
-      refreshGroup(row, group && { ...group, isFolded: isFolded(group), toggle, place: places.get(group.key) });
+      refreshGroup(
+        row,
+        group && {
+          ...group,
+          isFolded: isFolded(group),
+          toggle,
+          remove: remove && (() => remove(group.keys)),
+          place: places.get(group.key),
+        },
+      );
     },
   };
 }
 
-/**
- * @param {HTMLElement} row
- * @param {(LineGroup & { isFolded: boolean, toggle: () => void, place: RowState["place"] }) | undefined} group
- */
+/** @typedef {LineGroup & { isFolded: boolean, toggle: () => void, remove: (() => void) | null, place: RowState["place"] }} ShownGroup */
+
+/** @param {HTMLElement} row @param {ShownGroup | undefined} group */
 function refreshGroup(row, group) {
   const before = row.querySelector(".group-head");
   row.classList.toggle("folded", Boolean(group?.isFolded));
+  const removing = row.querySelector(".group-remove");
+  if (!group?.isFolded) removing?.remove();
   if (!group) {
     before?.remove();
     return;
@@ -124,6 +135,12 @@ function refreshGroup(row, group) {
     );
     row.prepend(head);
   }
+  if (group.isFolded && group.remove) {
+    const button = /** @type {HTMLElement} */ (removing ?? removeButton());
+    button.setAttribute("aria-label", t("Remove {name}", { name: group.words }));
+    button.onclick = group.remove;
+    if (!removing) head.after(button);
+  }
   head.setAttribute("aria-expanded", String(!group.isFolded));
   /** @type {HTMLElement} */ (head).onclick = group.toggle;
   find(head, "span").textContent = group.words;
@@ -135,3 +152,10 @@ function refreshGroup(row, group) {
     ? tn(group.keys.length, "{count} part", "{count} parts")
     : tn(group.keys.length, "{count} target", "{count} targets");
 }
+
+const removeButton = () =>
+  h(
+    "button",
+    { type: "button", class: "icon-button tight group-remove", title: t("Remove (Del)") },
+    icon("x", "small"),
+  );

@@ -45,7 +45,7 @@ export function mountTargets(store, actions, canPlan, map) {
   let shown = { places: new Map(), missed: new Set(), order: [], visible: [], arrivals: new Map(), orders: [] };
   const list = byId("target-list");
   const planViews = viewPlanning(list, actions, map);
-  const groups = createGroups(() => refresh(store.state), SHOWN_FIRST);
+  const groups = createGroups(() => refresh(store.state), SHOWN_FIRST, canPlan ? actions.removeTargets : null);
   const choosing = createChoosing(store, { canPlan, order: () => shown.order });
   const bar = canPlan
     ? mountChoosing(list, store, actions, { choosing, planViews, refresh: () => refresh(store.state) })
