@@ -93,18 +93,12 @@ def _items(flight: Flight, route: FrozenRoute, rules: ItemRules) -> Iterator[Mis
     if route.begun_by is None:
         yield _at(mavlink.MAV_CMD_NAV_TAKEOFF, first, (0.0, 0.0, 0.0, math.nan))
     flown_mps, photos, beside_wires = 0.0, 0, photo_clearances_m(flight.waypoints)
-    led_here_mps: float | None = None  # over the leg to the waypoints before at the same place, which have no item of their own
     for place, waypoint in enumerate(flight.waypoints):
-        own_mps = route.cruise_speed_mps if waypoint.speed_mps is None else waypoint.speed_mps
-        wanted_mps = own_mps if led_here_mps is None else led_here_mps
+        wanted_mps = route.cruise_speed_mps if waypoint.speed_mps is None else waypoint.speed_mps
         if waypoint.sequence <= begun_by + 1 or abs(wanted_mps - flown_mps) > rules.speed_step_mps:
             yield _plain(mavlink.MAV_CMD_DO_CHANGE_SPEED, (GROUND_SPEED, wanted_mps, NO_THROTTLE, 0.0), waypoint)
             flown_mps = wanted_mps
         follows = flight.waypoints[place + 1] if place + 1 < len(flight.waypoints) else None
-        if place > 0 and waypoint.sequence > begun_by + 1 and waypoint.sequence not in beside_wires and _is_repeated(waypoint, follows):
-            led_here_mps = wanted_mps
-            continue
-        led_here_mps = None
         if waypoint.task is not None and waypoint.task.view is not None:
             photos += 1
             yield from _aimed_photo(waypoint, waypoint.task, waypoint.task.view, photos, rules)
@@ -117,16 +111,6 @@ def _items(flight: Flight, route: FrozenRoute, rules: ItemRules) -> Iterator[Mis
         yield from _waypoint(waypoint, waypoint.task, is_stretch=_same_target(waypoint, follows), rules=rules)
     if flight.end_action != HOVER:
         yield _item(mavlink.MAV_CMD_NAV_LAND, last, (0.0, 0.0, 0.0, math.nan), last.ground_relative_m)
-
-
-def _is_repeated(waypoint: FrozenWaypoint, follows: FrozenWaypoint | None) -> bool:
-    """Whether nothing is done here and the next waypoint is at the same place: an autopilot may stop where an item repeats a place."""
-    return (
-        follows is not None
-        and waypoint.task is None
-        and (follows.task is None or follows.task.view is None)
-        and (follows.position, follows.altitude_relative_m) == (waypoint.position, waypoint.altitude_relative_m)
-    )
 
 
 def _waypoint(waypoint: FrozenWaypoint, task: Task | None, *, is_stretch: bool, rules: ItemRules) -> Iterator[MissionItem]:

@@ -36,13 +36,10 @@ def turning_s(
     node_mps = np.empty(3 * count + 1)
     node_mps[0::3] = end_mps
     for leg in range(count):
-        node_mps[3 * leg + 1], node_mps[3 * leg + 2] = end_mps[leg], end_mps[leg + 1]
-        part_m[3 * leg : 3 * leg + 3], part_mps[3 * leg : 3 * leg + 3] = 0.0, speed_mps[leg]
-        if length_m[leg] == 0.0:
-            continue
         line_m = max(length_m[leg] - taken_m[leg] - taken_m[leg + 1], 0.0)
         part_m[3 * leg], part_m[3 * leg + 1], part_m[3 * leg + 2] = 0.5 * arc_m[leg], line_m, 0.5 * arc_m[leg + 1]
-        part_mps[3 * leg], part_mps[3 * leg + 2] = end_mps[leg], end_mps[leg + 1]
+        part_mps[3 * leg], part_mps[3 * leg + 1], part_mps[3 * leg + 2] = end_mps[leg], speed_mps[leg], end_mps[leg + 1]
+        node_mps[3 * leg + 1], node_mps[3 * leg + 2] = end_mps[leg], end_mps[leg + 1]
     for part in range(3 * count):  # no faster than it can have become
         node_mps[part + 1] = min(node_mps[part + 1], math.sqrt(node_mps[part] ** 2 + 2.0 * acceleration_mps2 * part_m[part]))
     for part in range(3 * count - 1, -1, -1):  # and slow enough for what follows
@@ -83,34 +80,29 @@ def _corners(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Speed at each end of a leg, metres that its arc takes of both legs, and the arc's length, (n + 1,) each.
 
-    As wide as the speed needs, and as the waypoint and half of either leg leave room for. Legs without a length, between waypoints at
-    one place, are passed in one turn with that place.
+    As wide as the speed needs, and as the waypoint and half of either leg leave room for.
     """
     count = len(length_m)
     end_mps, taken_m, arc_m = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
     if not is_stop[count]:
         end_mps[count] = speed_mps[count - 1]
     for end in range(1, count):
-        if is_stop[end] or length_m[end - 1] == 0.0:
+        if is_stop[end]:
             continue
-        onward = end  # the leg on from this place
-        while onward + 1 < count and length_m[onward] == 0.0 and not is_stop[onward + 1]:
-            onward += 1
-        slower_mps = min(speed_mps[end - 1], speed_mps[onward])
-        one, other = along[end - 1], along[onward]
+        slower_mps = min(speed_mps[end - 1], speed_mps[end])
+        one, other = along[end - 1], along[end]
         cosine = one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
         if cosine >= STRAIGHT_COSINE:
-            end_mps[end : onward + 1] = slower_mps
+            end_mps[end] = slower_mps
             continue
         turn = math.acos(max(cosine, -1.0))
-        if turn > REVERSAL_RAD:
+        if turn > REVERSAL_RAD or length_m[end - 1] == 0.0:
             continue
         tangent = math.tan(0.5 * turn)
-        room_m = 0.5 * min(length_m[end - 1], length_m[onward]) / tangent
+        room_m = 0.5 * min(length_m[end - 1], length_m[end]) / tangent
         radius_m = min(CORNER_M / (1.0 / math.cos(0.5 * turn) - 1.0), slower_mps**2 / corner_mps2, room_m)
-        end_mps[end : onward + 1] = min(slower_mps, math.sqrt(corner_mps2 * radius_m))
+        end_mps[end] = min(slower_mps, math.sqrt(corner_mps2 * radius_m))
         taken_m[end], arc_m[end] = radius_m * tangent, radius_m * turn
-        taken_m[onward], arc_m[onward] = taken_m[end], arc_m[end]
     return end_mps, taken_m, arc_m
 
 

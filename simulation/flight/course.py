@@ -46,7 +46,7 @@ class Piece:
     length_m: float
     fastest_mps: float
     end_mps: float  # maximum speed at its end
-    marks: tuple[int, ...]  # reported at the middle of an arc, or at the end of a line
+    mark: int | None  # reported at the middle of an arc, or at the end of a line
 
     def at(self, s_m: float) -> tuple[Vector, Vector, float]:
         """Return place, direction and curvature [1/m] after `s_m` metres."""
@@ -74,7 +74,7 @@ class _Leg:
     along: Vector
     length_m: float
     fastest_mps: float
-    marks: tuple[int, ...]  # of the places at its end, of which there may be several at one point
+    mark: int | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,13 +99,13 @@ def course(start: Vector, vias: Sequence[Via], speed_limits: SpeedLimits) -> tup
         line_m = max(leg.length_m - cut_m - taken_m, 0.0)
         is_rounded = corner is not None and corner.radius_m > 0.0
         end_mps = 0.0 if corner is None else corner.speed_mps
-        marks = () if is_rounded else leg.marks
-        pieces.append(Piece(_ahead(leg.start, leg.along, cut_m), leg.along, leg.along, 0.0, line_m, leg.fastest_mps, end_mps, marks))
+        mark = None if is_rounded else leg.mark
+        pieces.append(Piece(_ahead(leg.start, leg.along, cut_m), leg.along, leg.along, 0.0, line_m, leg.fastest_mps, end_mps, mark))
         if follows is not None and corner is not None and is_rounded:
             begin = _ahead(leg.start, leg.along, leg.length_m - corner.taken_m)
             inward = _inward(leg.along, follows.along, corner.turn_rad)
             length_m = corner.radius_m * corner.turn_rad
-            pieces.append(Piece(begin, leg.along, inward, corner.radius_m, length_m, corner.speed_mps, corner.speed_mps, leg.marks))
+            pieces.append(Piece(begin, leg.along, inward, corner.radius_m, length_m, corner.speed_mps, corner.speed_mps, leg.mark))
         cut_m = taken_m
     return _slowed_in_time(pieces, speed_limits.acceleration_mps2)
 
@@ -114,21 +114,17 @@ def _legs(start: Vector, vias: Sequence[Via], speed_limits: SpeedLimits) -> list
     legs: list[_Leg] = []
     here = start
     for via in vias:
-        marks = () if via.mark is None else (via.mark,)
         away = (via.place[0] - here[0], via.place[1] - here[1], via.place[2] - here[2])
         length_m = math.sqrt(away[0] ** 2 + away[1] ** 2 + away[2] ** 2)
         level_m = math.hypot(away[0], away[1])
-        if length_m < MIN_LEG_M and legs:
-            legs[-1] = replace(legs[-1], marks=legs[-1].marks + marks)
-            continue
         if length_m < MIN_LEG_M:
-            legs.append(_Leg(here, (0.0, 0.0, 1.0), 0.0, via.speed_mps, marks))
+            legs.append(_Leg(here, legs[-1].along if legs else (0.0, 0.0, 1.0), 0.0, via.speed_mps, via.mark))
             continue
         limits = [(speed_limits.climb_mps if away[2] > 0 else speed_limits.descent_mps) * length_m / abs(away[2])] if away[2] else []
         if level_m > 1e-3 * length_m:
             limits.append(via.speed_mps * length_m / level_m)
         along = (away[0] / length_m, away[1] / length_m, away[2] / length_m)
-        legs.append(_Leg(here, along, length_m, min(limits), marks))
+        legs.append(_Leg(here, along, length_m, min(limits), via.mark))
         here = via.place
     return legs
 

@@ -96,8 +96,8 @@ class Reference:
         while True:
             piece = self._pieces[self._number]
             is_past = self._s_m >= piece.length_m - NEAR_ENOUGH_M
-            if piece.marks and not self._is_ordered and (is_past or (piece.radius_m and self._s_m >= 0.5 * piece.length_m)):
-                marks += piece.marks
+            if piece.mark is not None and not self._is_ordered and (is_past or (piece.radius_m and self._s_m >= 0.5 * piece.length_m)):
+                marks.append(piece.mark)
                 self._is_ordered = True
             if not is_past:
                 break

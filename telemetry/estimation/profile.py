@@ -26,7 +26,6 @@ SLOW_BELOW_M = 8.0  # both land slowly below it
 SETTLE_S = 1.5  # until it hovers at a task, and until it leaves
 MIN_SPEED_MPS = 0.5
 SLOWS_SHARE, MIN_CORNER_SHARE = 0.5, 0.1  # reduction of speed in a corner per radian, and its minimum
-ONE_PLACE_M = 0.01  # between nodes at one place, which are passed at once
 STEPS = 12  # of a leg
 # Standard deviations of durations, beside the speed.
 STRAIGHT_S, TURN_S = 0.15, 1.6  # at a passed waypoint; added in proportion to the sine of half the bend
@@ -154,7 +153,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
     reached = []
     share = 0.5 * (1.0 - np.cos(np.linspace(0.0, math.pi, STEPS + 1)))
     for number, node in enumerate(nodes[1:]):
-        if length_m[number] > ONE_PLACE_M:
+        if length_m[number] > 0.01:
             way_m = share * length_m[number]
             speed = np.minimum(
                 wanted_mps[number],
@@ -201,21 +200,13 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
 
 
 def _bends(step: FloatArray, length_m: FloatArray) -> FloatArray:
-    """Return the change of direction at each node [rad], 0 at both ends; of several nodes at one place the first has it."""
+    """Return the change of direction at each node [rad], 0 at both ends and at legs without length."""
     bend = np.zeros(len(step) + 1)
     for number in range(1, len(step)):
-        onward = _leg_onward(length_m, number)
-        lengths_m2 = float(length_m[number - 1] * length_m[onward])
+        lengths_m2 = float(length_m[number - 1] * length_m[number])
         if lengths_m2 > 1e-4:
-            bend[number] = math.acos(min(max(float(step[number - 1] @ step[onward]) / lengths_m2, -1.0), 1.0))
+            bend[number] = math.acos(min(max(float(step[number - 1] @ step[number]) / lengths_m2, -1.0), 1.0))
     return bend
-
-
-def _leg_onward(length_m: FloatArray, leg: int) -> int:
-    """Return the first leg with a length from this one on; the last one where there is none."""
-    while leg + 1 < len(length_m) and length_m[leg] <= ONE_PLACE_M:
-        leg += 1
-    return leg
 
 
 def _corner_speeds(nodes: list[_Node], bend: FloatArray, length_m: FloatArray, wanted_mps: FloatArray, start_mps: float) -> FloatArray:
@@ -223,11 +214,9 @@ def _corner_speeds(nodes: list[_Node], bend: FloatArray, length_m: FloatArray, w
     speed = np.zeros(len(nodes))
     speed[0] = start_mps
     for number in range(1, len(nodes) - 1):
-        onward = _leg_onward(length_m, number)
-        passes = all(node.hold_s is None for node in nodes[number : onward + 1])
-        if passes and min(length_m[number - 1], length_m[onward]) > ONE_PLACE_M:
+        if nodes[number].hold_s is None and min(length_m[number - 1], length_m[number]) > 0.01:
             share = max(1.0 - SLOWS_SHARE * bend[number], MIN_CORNER_SHARE)
-            speed[number : onward + 1] = min(wanted_mps[number - 1], wanted_mps[onward]) * share
+            speed[number] = min(wanted_mps[number - 1], wanted_mps[number]) * share
     for number in range(1, len(nodes)):
         speed[number] = min(speed[number], math.sqrt(speed[number - 1] ** 2 + 2 * ACCELERATION_MPS2 * length_m[number - 1]))
     for number in range(len(nodes) - 2, 0, -1):

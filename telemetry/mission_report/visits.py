@@ -68,21 +68,9 @@ def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -
             continue
         following = route.waypoints[place + 1 : place + 2]
         is_followed_here = any(_apart_m(waypoint, other) <= REACHED_M for other in following)
-        sequence = waypoint.sequence if reported is None else _reported_here(route.waypoints[place:], reported)
-        is_followed_here = is_followed_here and sequence == waypoint.sequence
-        passes = [(in_air, 0)] if reported is None else _passes(sequence, in_air, reported, is_followed_here=is_followed_here)
+        passes = [(in_air, 0)] if reported is None else _passes(waypoint.sequence, in_air, reported, is_followed_here=is_followed_here)
         found.append(_best([_visit(waypoint, own, before, fastest_mps) for own, before in passes or [([], 0)]]))
     return found
-
-
-def _reported_here(waypoints: Sequence[FrozenWaypoint], reported: Sequence[int]) -> int:
-    """Return the sequence by which reports call the first waypoint: of several at one place, a vehicle knows the last alone."""
-    first = waypoints[0]
-    for one, other in pairwise(waypoints):
-        if one.sequence in reported or (one.position, one.altitude_relative_m) != (other.position, other.altitude_relative_m):
-            return one.sequence if one.sequence in reported else first.sequence
-    last = waypoints[-1].sequence
-    return last if last in reported else first.sequence
 
 
 def _best(visits: Sequence[ReportedVisit]) -> ReportedVisit:

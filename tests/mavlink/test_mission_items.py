@@ -58,19 +58,6 @@ def test_speed_changes_only_where_a_leg_is_flown_otherwise():
     assert [item.parameters[1] for item in load.mission if item.command == SPEED] == [12.0, 5.0, 12.0]
 
 
-def test_waypoints_at_one_place_are_one_item_with_the_speed_of_the_leg_to_it():
-    """As where a stretch begins at the end of another."""
-    end_of_one = waypoint(1, WaypointKind.PASS, target=0, speed_mps=5.0)
-    begin = replace(end_of_one, sequence=2, kind=WaypointKind.TARGET, target=1, task=Task(TaskKind.LOOK, 0.0), speed_mps=None)
-    along = waypoint(3, WaypointKind.PASS, target=1, lon=START.lon + 0.01)
-    (load,) = flight_loads(start_and_end(end_of_one, begin, along))
-    flown = [(item.command, item.waypoint) for item in load.mission if item.command in {WAYPOINT, SPEED, LOOK_AT}]
-    assert flown == [(SPEED, 0), (WAYPOINT, 0), (SPEED, 1), (WAYPOINT, 2), (SPEED, 3), (WAYPOINT, 3), (WAYPOINT, 4)]
-    held = replace(end_of_one, task=Task(TaskKind.HOLD, 5.0))
-    (load,) = flight_loads(start_and_end(held, begin, along))
-    assert [item.waypoint for item in load.mission if item.command == WAYPOINT] == [0, 1, 2, 3, 4]
-
-
 def test_hover_lasts_whole_seconds_rounded_up():
     mission = with_task(Task(TaskKind.HOLD, 12.2))
     assert mission[3].command == WAYPOINT and mission[3].parameters[0] == 13.0

@@ -47,6 +47,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     expect(picked_so_far).to_have_count(3)
     page.keyboard.press("w")
     clicks_at(page, things.line_point)
+    page.get_by_role("button", name="One UAV flies it whole").click()
     page.keyboard.press("v")
     expect(picked_so_far).to_have_count(4)
     kinds = page.locator("#target-list .target > .icon use").evaluate_all("uses => uses.map(use => use.getAttribute('href').split('#')[1])")
@@ -142,7 +143,7 @@ def test_what_is_picked_can_be_undone_and_survives_a_reload(visitor: Visitor) ->
     find = page.get_by_role("combobox", name="Find an asset or a line")
     expect(find).to_be_focused()
     expect(page.get_by_role("listbox").get_by_role("option").first).to_be_visible()  # empty: what is in view
-    find.fill(f"{region.voltage_kv} kV")
+    find.fill("bridge")
     expect(page.get_by_role("listbox").get_by_role("option").first).to_have_attribute("aria-selected", "true")
     page.keyboard.press("Enter")
     expect(page.locator("#target-list .target")).to_have_count(1)

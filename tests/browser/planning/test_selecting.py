@@ -32,14 +32,15 @@ def searches(page: Page, text: str) -> None:
     expect(page.get_by_role("listbox").get_by_role("option").first).to_have_attribute("aria-selected", "true")  # no longer what is in view
 
 
-def adds_all(page: Page, text: str) -> int:
-    """How many came in by a search."""
+def adds_all(page: Page, text: str) -> tuple[int, int]:
+    """How many assets a search has found, and how many targets these are: long lines come in parts."""
     searches(page, text)
     button = page.get_by_role("button", name=re.compile(r"Add all \d+"))
-    count = int(re.findall(r"\d+", button.text_content() or "")[0])
+    found = int(re.findall(r"\d+", button.text_content() or "")[0])
     button.click()
-    expect(rows(page)).to_have_count(count)
-    return count
+    count = page.locator("#target-count")
+    expect(count).to_have_text(re.compile(r"\d+"))
+    return found, int(count.text_content() or "")
 
 
 def longest_line(page: Page) -> tuple[dict[str, Any], list[dict[str, Any]]]:
@@ -154,16 +155,21 @@ def test_every_bridge_of_a_railway_is_picked_from_its_row(visitor: Visitor) -> N
     )
     searches(page, railway["properties"]["osm"])
     page.get_by_role("listbox").get_by_role("option").filter(has_text="section").click()
-    page.get_by_role("button", name=re.compile("^Task, priority of ")).click()
+    expect(rows(page)).to_have_count(1)
+    if page.locator("#target-list .group-head").count():
+        page.locator("#target-list .group-head").click()
+    parts = len(targets(page))
+    page.get_by_role("button", name=re.compile("^Task, priority of ")).first.click()
     page.get_by_role("button", name="Add every bridge of it").click()
-    expect(rows(page)).to_have_count(1 + len(bridges))
-    assert targets(page)[1:] == [bridge["label"] for bridge in bridges]
+    expect(page.locator("#target-count")).to_have_text(f"{parts + len(bridges)}")
+    assert targets(page)[parts:] == [bridge["label"] for bridge in bridges]
 
 
 def test_a_search_takes_all_that_match_and_is_filtered(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     count = asks(page, f"/assets?text={region.voltage_kv}&flyable=true&total=true&limit=1")["total"]
-    assert adds_all(page, str(region.voltage_kv)) == count > 1
+    found, targets_added = adds_all(page, str(region.voltage_kv))
+    assert targets_added >= found == count > 1
     page.get_by_role("button", name="Undo", exact=True).first.click()
     expect(rows(page)).to_have_count(0)
 
@@ -189,7 +195,7 @@ def test_enter_waits_for_what_has_been_typed(visitor: Visitor) -> None:
     page.keyboard.type(line["properties"]["osm"])
     page.keyboard.press("Enter")
     expect(rows(page)).to_have_count(1)
-    assert targets(page) == [line["properties"]["label"]]
+    assert targets(page)[0].startswith(line["properties"]["label"])
 
 
 def test_a_pasted_list_says_what_is_found_what_is_unclear_and_what_is_unknown(
@@ -307,7 +313,8 @@ def osm_of(page: Page, asset: int) -> str:
 @pytest.mark.long
 def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_undone(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
-    count = adds_all(page, str(region.voltage_kv))
+    _found, count = adds_all(page, str(region.voltage_kv))
+    shown = page.locator("#target-count")
     page.get_by_role("button", name="Choose", exact=True).focus()
     page.keyboard.press("Enter")
     expect(page.get_by_role("checkbox", name=re.compile("^Choose ")).first).to_be_focused()
@@ -316,16 +323,16 @@ def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_un
     page.keyboard.press("Space")
     expect(page.get_by_text("2 chosen")).to_be_visible()
     page.keyboard.press("Delete")
-    expect(rows(page)).to_have_count(count - 2)
+    expect(shown).to_have_text(f"{count - 2}")
     page.get_by_role("button", name="All", exact=True).click()
     expect(page.get_by_text(f"{count - 2} chosen")).to_be_visible()
     page.get_by_role("group", name="Chosen targets").get_by_role("button", name="Remove").click()
     expect(page.get_by_text("Nothing picked yet", exact=True)).to_be_visible()
     undo = page.get_by_role("button", name="Undo", exact=True).first
     undo.click()
-    expect(rows(page)).to_have_count(count - 2)
+    expect(shown).to_have_text(f"{count - 2}")
     undo.click()
-    expect(rows(page)).to_have_count(count)
+    expect(shown).to_have_text(f"{count}")
     undo.click()
     expect(rows(page)).to_have_count(0)
     expect(undo).to_be_disabled()
@@ -359,7 +366,7 @@ def test_the_targets_of_a_folded_line_are_passed_and_removed_at_once_by_keyboard
 @pytest.mark.long
 def test_a_selection_is_kept_loaded_renamed_deleted_and_brought_back(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
-    count = adds_all(page, str(region.voltage_kv))
+    _found, count = adds_all(page, str(region.voltage_kv))
     page.get_by_role("button", name="Saved selections").click()
     dialog = page.get_by_role("dialog", name="Saved selections")
     dialog.get_by_label(f"Keep the {count} picked targets as").fill("Test belt")
@@ -374,7 +381,7 @@ def test_a_selection_is_kept_loaded_renamed_deleted_and_brought_back(visitor: Vi
     wait_for_map(other)
     other.get_by_role("button", name="Saved selections").click()
     other.get_by_role("button", name="Add Test belt").click()
-    expect(rows(other)).to_have_count(count)
+    expect(other.locator("#target-count")).to_have_text(f"{count}")
     assert targets(other) == targets(page)
 
     page.get_by_role("button", name="Saved selections").click()

@@ -30,8 +30,9 @@ def turns_s(ways: Sequence[Way], seconds: Sequence[float], stands: Sequence[bool
     corners = [(0.0, 0.0, 0.0)]  # speed, metres taken of both legs, metres of the arc
     for number, (leg, follows) in enumerate(pairwise(legs)):
         is_stand = any(stands[leg + 1 : follows + 1])
+        is_doubled = follows > leg + 1
         pair = ways[leg], ways[follows]
-        corners.append((0.0, 0.0, 0.0) if is_stand else _corner(*pair, speeds_mps[number : number + 2]))
+        corners.append((0.0, 0.0, 0.0) if is_stand else _corner(*pair, speeds_mps[number : number + 2], is_doubled=is_doubled))
     corners.append((0.0 if any(stands[legs[-1] + 1 :]) else speeds_mps[-1], 0.0, 0.0))
     at_m, most_mps, first = _limits(lengths_m, speeds_mps, corners)
     slope = 2.0 * ACCELERATION_MPS2 * at_m
@@ -54,14 +55,14 @@ def turns_s(ways: Sequence[Way], seconds: Sequence[float], stands: Sequence[bool
     return _without_stops(lost_s, ways, stands, brakes_s)
 
 
-def _corner(before: Way, after: Way, speeds_mps: Sequence[float]) -> tuple[float, float, float]:
+def _corner(before: Way, after: Way, speeds_mps: Sequence[float], *, is_doubled: bool) -> tuple[float, float, float]:
     slower_mps = min(speeds_mps)
     long_m, next_m = math.hypot(*before), math.hypot(*after)
     across = math.hypot(*np.cross(before, after).tolist()) / (long_m * next_m)
     turn = math.atan2(across, float(np.dot(before, after)) / (long_m * next_m))
     if turn < NO_TURN_RAD:
         return slower_mps, 0.0, 0.0
-    if turn > STANDS_RAD:
+    if turn > STANDS_RAD or is_doubled:
         return 0.0, 0.0, 0.0
     half = 0.5 * (math.pi - turn)  # between a leg and the line to the arc's centre
     radius_m = min(INSIDE_M * math.sin(half) / (1.0 - math.sin(half)), slower_mps**2 / CORNER_MPS2)

@@ -60,16 +60,6 @@ def test_between_two_near_corners_it_does_not_come_to_its_speed() -> None:
     assert between_s == pytest.approx((peak_mps - corner_mps) + arcs_s - 25 / 14, abs=1e-9)
 
 
-def test_several_waypoints_at_one_place_are_passed_in_one_turn() -> None:
-    """As where a stretch begins at the end of another."""
-    nothing = (0.0, 0.0, 0.0)
-    for turn in ((0, 500, 0), (300, 400, 0), (500, 0, 0)):
-        once = turning((500, 0, 0), turn, speed_mps=14)
-        assert turning((500, 0, 0), nothing, nothing, turn, speed_mps=14) == pytest.approx([once[0], 0, 0, once[1]], abs=1e-9)
-    stops = turning((500, 0, 0), nothing, (0, 500, 0), speed_mps=14, stands=(2,))
-    assert stops == pytest.approx([turning((500, 0, 0), (0, 500, 0), speed_mps=14, stands=(1,))[0], 0, 0], abs=1e-9)
-
-
 def test_a_leg_that_is_flown_slower_is_slowed_down_to() -> None:
     leg_m, leg_s = np.array([[300.0, 0.0, 0.0], [300.0, 0.0, 0.0]]), np.array([300.0 / 14.0, 300.0 / 4.0])
     found = turning_s(leg_m, leg_s, np.array([True, False, False]), np.full(2, 3.5), 2.0, 4.0)

@@ -6,10 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.trajectory.waypoints import WaypointKind
 from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.visits import visits_of
-from tests.telemetry.mission_report.flights import HOLD_S, SPEED_MPS, flown, flown_twice, place, route, route_of_two_flights
+from tests.telemetry.mission_report.flights import HOLD_S, flown, flown_twice, place, route, route_of_two_flights
 
 MAX_SPEED_MPS = 15.0
 
@@ -100,20 +99,6 @@ def test_two_targets_at_one_place_are_held_each_by_itself() -> None:
     first, second = visits_of(replace(way, waypoints=tuple(waypoints)), fixes, fastest_mps=MAX_SPEED_MPS)
     assert first.held_s == pytest.approx(21.0, abs=2.5) and first.is_done
     assert second.held_s == pytest.approx(11.0, abs=2.5) and not second.is_done
-
-
-@pytest.mark.parametrize("reached", [True, False])
-def test_of_two_waypoints_at_one_place_the_vehicle_knows_the_second_alone(reached: bool) -> None:
-    """As where a stretch begins at the end of another: an autopilot has one item for both."""
-    way, waypoints = route(), list(route().waypoints)
-    waypoints[1] = replace(waypoints[1], task=None, kind=WaypointKind.PASS)
-    waypoints[2] = replace(waypoints[2], position=waypoints[1].position, altitude_relative_m=waypoints[1].altitude_relative_m)
-    end = 30 if reached else 25
-    fixes = [Fix(1_000.0 + second, place(10.0 * second, 0.0), 30.0, None, 2, is_in_air=True) for second in range(end)]
-    if reached:
-        fixes += [Fix(1_030.0 + second, place(300.0, 10.0 * second), 30.0, None, 3, is_in_air=True) for second in range(20)]
-    visits = visits_of(replace(way, waypoints=tuple(waypoints)), fixes, fastest_mps=SPEED_MPS)
-    assert [visit.is_done for visit in visits] == [reached, reached]
 
 
 OUT_AND_BACK_M = ((0.0, 0.0), (900.0, 0.0), (300.0, 0.0), (0.0, 0.0))  # over the second target on the way out to the first

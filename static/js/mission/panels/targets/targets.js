@@ -177,9 +177,9 @@ function mountChoosing(list, store, actions, { choosing, planViews, refresh }) {
 function more(target, actions) {
   const { asset } = target;
   if (!isWhole(target) || asset === null) return [];
-  if (target.stretch)
-    return [{ icon: target.kind, words: t("One UAV flies it whole"), act: () => actions.flyWhole(asset) }];
-  const share = { icon: "replace", words: t("Share it among UAVs"), act: () => void actions.share(target) };
+  const share = target.stretch
+    ? { icon: target.kind, words: t("One UAV flies it whole"), act: () => actions.flyWhole(asset) }
+    : { icon: "replace", words: t("Share it among UAVs"), act: () => void actions.share(target) };
   return target.kind === "line"
     ? [share, { icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(asset) }]
     : [share, { icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(asset) }];
