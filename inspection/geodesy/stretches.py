@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 
 FloatArray = NDArray[np.float64]
@@ -75,11 +75,19 @@ def line_end(line: FloatArray, which: int) -> PlaceOnLine:
     return PlaceOnLine(0, 0.0, at, 0.0) if which == 0 else PlaceOnLine(len(line) - 2, 1.0, at, 0.0)
 
 
-def part_between(line: FloatArray, first: PlaceOnLine, second: PlaceOnLine) -> LinePart:
-    """Return the part of a line between two places on it, in the line's direction."""
+def vertex_lengths_m(line: FloatArray) -> FloatArray:
+    """Return how far along a line each vertex lies, metres."""
+    return np.concatenate([[0.0], np.cumsum(distance_m(line[:-1], line[1:]))])
+
+
+def part_between(line: FloatArray, first: PlaceOnLine, second: PlaceOnLine, vertex_m: FloatArray | None = None) -> LinePart:
+    """Return the part of a line between two places on it, in the line's direction. vertex_m: as of vertex_lengths_m, if it is known."""
     if (second.segment, second.share) < (first.segment, first.share):
         first, second = second, first
-    from_m, to_m = (path_length_m(np.array([*line[: place.segment + 1], place.position])) for place in (first, second))
+    lengths_m = vertex_lengths_m(line) if vertex_m is None else vertex_m
+    from_m, to_m = (
+        float(lengths_m[place.segment] + distance_m(line[place.segment], np.array(place.position))[0]) for place in (first, second)
+    )
     return LinePart(first.position, second.position, from_m, to_m)
 
 
@@ -88,27 +96,36 @@ def parts_of_line(
 ) -> list[LinePart]:
     """Return a line, or its stretch between two places, cut at vertices into at most MAX_PARTS parts of about `part_m` metres.
 
-    at: the vertices where it may be cut, such as those with a support; if none of them lies on the way, all. A stretch is stored as
-    its two ends: where these would lead to another part, as on a line that meets itself, the whole is returned as one part.
+    at: the vertices where it is cut if they are near, such as those with a support; else it is cut at any. A stretch is stored as its
+    two ends: where these would lead to another part, as on a line that meets itself, the whole is returned as one part.
     """
-    first, last = ends or (line_end(line, 0), line_end(line, -1))
-    whole = part_between(line, first, last)
+    vertex_m = vertex_lengths_m(line)
+    whole = part_between(line, *(ends or (line_end(line, 0), line_end(line, -1))), vertex_m)
     count = part_count(whole.length_m, part_m)
-    vertex_m = np.concatenate([[0.0], np.cumsum(distance_m(line[:-1], line[1:]))])
     inside = np.flatnonzero((vertex_m > whole.from_m + SAME_LENGTH_M) & (vertex_m < whole.to_m - SAME_LENGTH_M))
-    candidates = np.intersect1d(inside, np.asarray(at, dtype=np.int64))
-    candidates = candidates if len(candidates) else inside
-    if count < 2 or not len(candidates):
+    if count < 2 or not len(inside):
         return [whole]
     wanted_m = whole.from_m + whole.length_m * np.arange(1, count) / count
-    cuts = np.unique(candidates[np.abs(vertex_m[candidates] - wanted_m[:, None]).argmin(axis=1)])
+    nearest = _nearest(vertex_m, inside, wanted_m)
+    preferred = np.intersect1d(inside, np.asarray(at, dtype=np.int64))
+    if len(preferred):
+        found = _nearest(vertex_m, preferred, wanted_m)
+        is_near = np.abs(vertex_m[found] - wanted_m) < 0.5 * whole.length_m / count
+        nearest = np.where(is_near, found, nearest)
+    cuts = np.unique(nearest)
     places = [whole.start, *(LonLat(float(lon), float(lat)) for lon, lat in line[cuts]), whole.end]
     lengths_m = [whole.from_m, *vertex_m[cuts].tolist(), whole.to_m]
-    parts = [LinePart(*at, *along_m) for at, along_m in zip(pairwise(places), pairwise(lengths_m), strict=True)]
-    return parts if all(_leads_back(line, part) for part in parts) else [whole]
+    parts = [LinePart(*places_of, *along_m) for places_of, along_m in zip(pairwise(places), pairwise(lengths_m), strict=True)]
+    return parts if all(_leads_back(line, vertex_m, part) for part in parts) else [whole]
 
 
-def _leads_back(line: FloatArray, part: LinePart) -> bool:
+def _nearest(vertex_m: FloatArray, candidates: IntArray, wanted_m: FloatArray) -> IntArray:
+    """Return for each length the candidate that is nearest to it, (n,); candidates are in order."""
+    found: IntArray = candidates[np.abs(vertex_m[candidates] - wanted_m[:, None]).argmin(axis=1)]
+    return found
+
+
+def _leads_back(line: FloatArray, vertex_m: FloatArray, part: LinePart) -> bool:
     """Whether the ends of the part, looked up on the line, give the part itself."""
-    found = part_between(line, nearest_on_line(line, part.start), nearest_on_line(line, part.end))
+    found = part_between(line, nearest_on_line(line, part.start), nearest_on_line(line, part.end), vertex_m)
     return abs(found.from_m - part.from_m) < SAME_LENGTH_M and abs(found.to_m - part.to_m) < SAME_LENGTH_M

@@ -6,13 +6,10 @@ from heapq import heappop, heappush
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.joining import join_vertices
 from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
-
-IntArray = NDArray[np.int64]
 
 DETOUR_COST = 3.0  # per metre of a line that is not of the circuit; so much longer may the way along the circuit be
 
@@ -51,11 +48,6 @@ def supports_in_order(supports: InfrastructurePlaces, line: InfrastructureWays) 
     nodes = join_vertices(supports, line).node_of_vertex
     passed = dict.fromkeys(int(node) for node in nodes if node < len(supports))
     return tuple(int(supports.asset[node]) for node in passed)
-
-
-def vertices_at_supports(supports: InfrastructurePlaces, line: InfrastructureWays) -> IntArray:
-    """Indices of the vertices of one line where a support stands."""
-    return np.flatnonzero(join_vertices(supports, line).node_of_vertex < len(supports))
 
 
 def stretch_between(

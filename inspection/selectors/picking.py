@@ -8,17 +8,16 @@ from typing import Any
 
 import numpy as np
 import shapely
-from django.contrib.gis.geos import GEOSGeometry, LineString, Point
+from django.contrib.gis.geos import GEOSGeometry, LineString
 from django.contrib.postgres.fields import ArrayField
 from django.db import connection
 from django.db.models import F, Func, Q, QuerySet, TextField, Value
 from django.db.models.functions import Lower
 
 from inspection.geodesy import LonLat, path_length_m
-from inspection.geodesy.stretches import FloatArray, IntArray, LinePart, nearest_on_line, part_between, parts_of_line
+from inspection.geodesy.stretches import FloatArray, IntArray, LinePart, nearest_on_line, part_between, parts_of_line, vertex_lengths_m
 from inspection.models import Asset, AssetKind
-from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
-from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order, vertices_at_supports
+from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order
 from inspection.selectors.asset_names import asset_label, assets_with_made_names, made_name, part_label
 from inspection.selectors.ground_data import supports_and_lines
 
@@ -35,6 +34,7 @@ SIDES_AT_ONCE = 256
 BESIDE_DEG = 1e-5  # about a metre: a bridge's outline may end where the section begins
 DEFAULT_PART_M = 1_000.0  # of a line that UAVs share
 LONGER = 1.1
+PER_CENTIMETRE = 1e7  # of a degree
 CARRIES_TRACK = ("", "a railway", "a road and a railway")  # "": its ways do not state what it carries
 
 
@@ -48,6 +48,10 @@ class TooTangled(Exception):
 
 class NoWayAlongLines(Exception):
     """Raised when no line leads from one support to the other."""
+
+
+class NoStretch(Exception):
+    """Raised where both ends of a stretch are one place."""
 
 
 class NotOneLine(Exception):
@@ -146,49 +150,77 @@ class RailwayBridges:
     bridges: list[int]
 
 
-def _supports_and_line(line: Asset) -> tuple[InfrastructurePlaces, InfrastructureWays]:
-    west, south, east, north = line.geometry.extent
-    near = (west - BESIDE_DEG, south - BESIDE_DEG, east + BESIDE_DEG, north + BESIDE_DEG)
-    return supports_and_lines(near, line=line.pk)
-
-
 def supports_of_line(line: Asset) -> tuple[int, ...]:
     """Return the primary keys of the line's supports in its direction."""
-    return supports_in_order(*_supports_and_line(line))
+    supports, ways = supports_and_lines(_around([line]), line=line.pk)
+    return supports_in_order(supports, ways)
+
+
+def _around(lines: Sequence[Asset]) -> Box:
+    extents = np.array([line.geometry.extent for line in lines])
+    (west, south), (east, north) = extents[:, :2].min(axis=0).tolist(), extents[:, 2:].max(axis=0).tolist()
+    return west - BESIDE_DEG, south - BESIDE_DEG, east + BESIDE_DEG, north + BESIDE_DEG
 
 
 def parts_of_asset(asset: Asset, part_m: float, ends: Sequence[LonLat] | None = None) -> list[LinePart]:
     """Return the parts of a line or railway, or of its stretch between the places nearest to `ends`; a line is cut at its supports.
 
-    Raises NotOneLine.
+    Raises NotOneLine, and NoStretch where both ends are one place.
     """
     course = _course(asset)
     stretch = None if ends is None else (nearest_on_line(course, ends[0]), nearest_on_line(course, ends[1]))
-    return parts_of_line(course, part_m, ends=stretch, at=_cuts(asset))
+    parts = parts_of_line(course, part_m, ends=stretch, at=_vertices_at(_support_keys([asset]), course))
+    if parts[0].start == parts[-1].end and len(parts) == 1 and ends is not None:
+        raise NoStretch
+    return parts
 
 
-def _cuts(asset: Asset) -> Sequence[int] | IntArray:
-    """Return the vertices at which it may be cut; none: at all of them."""
-    return vertices_at_supports(*_supports_and_line(asset)) if asset.kind == AssetKind.LINE else ()
+def _support_keys(assets: Sequence[Asset]) -> IntArray:
+    """Return the places of supports around the lines among the assets, as _keys."""
+    lines = [asset for asset in assets if asset.kind == AssetKind.LINE]
+    if not lines:
+        return np.zeros(0, dtype=np.int64)
+    supports, _ways = supports_and_lines(_around(lines), line=0)
+    return _keys(supports.position)
+
+
+def _keys(position: FloatArray) -> IntArray:
+    """Return a number for each position (n, 2), alike for those that are alike within a centimetre."""
+    lon, lat = np.round(position * PER_CENTIMETRE).astype(np.int64).T
+    keys: IntArray = lon * (1 << 32) + lat
+    return keys
+
+
+def _vertices_at(support_keys: IntArray, course: FloatArray) -> IntArray:
+    return np.flatnonzero(np.isin(_keys(course), support_keys))
 
 
 def parts_of_assets(lines: Sequence[Asset], most: int, area: GEOSGeometry | None = None) -> list[tuple[Asset, LinePart]]:
     """Return the parts of several lines and railways, each with its line, at most so many unless there are more lines.
 
-    area: only parts with an end in it count. What is not one line is left out, as it cannot be flown along.
+    area: only parts that come into it count. What is not one line is left out, as it cannot be flown along.
     """
-    flown = [(line, _course(line), _cuts(line)) for line in lines if isinstance(line.geometry, LineString)]
-    longest_m, part_m = max((path_length_m(course) for _line, course, _cut in flown), default=0.0), DEFAULT_PART_M
+    keys = _support_keys(lines)
+    flown = [(line, _course(line)) for line in lines if isinstance(line.geometry, LineString)]
+    cuts = [_vertices_at(keys, course) for _line, course in flown]
+    longest_m, part_m = max((path_length_m(course) for _line, course in flown), default=0.0), DEFAULT_PART_M
+    within = None if area is None else shapely.from_wkb(bytes(area.wkb))
+    shapely.prepare(within)
     while True:
         found = [
             (line, part)
-            for line, course, cuts in flown
-            for part in parts_of_line(course, part_m, at=cuts)
-            if area is None or any(area.intersects(Point(*end, srid=4326)) for end in (part.start, part.end))
+            for (line, course), at in zip(flown, cuts, strict=True)
+            for part in parts_of_line(course, part_m, at=at)
+            if within is None or shapely.intersects(within, shapely.linestrings(_course_of(part, course)))
         ]
         if len(found) <= most or part_m > longest_m:
             return found
         part_m *= max(LONGER, len(found) / most)
+
+
+def _course_of(part: LinePart, line: FloatArray) -> FloatArray:
+    vertex_m = vertex_lengths_m(line)
+    return np.array([part.start, *line[(vertex_m > part.from_m) & (vertex_m < part.to_m)], part.end])
 
 
 def label_between(line: Asset, start: LonLat, end: LonLat) -> str:
@@ -288,6 +320,7 @@ def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
 __all__ = [
     "DEFAULT_PART_M",
     "MAX_IN_AN_AREA",
+    "NoStretch",
     "NoWayAlongLines",
     "NotOnTheLine",
     "NotOneLine",

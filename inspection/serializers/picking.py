@@ -109,7 +109,7 @@ class PartsInputSerializer(serializers.Serializer):
     most = serializers.IntegerField(
         min_value=1, max_value=MAX_LINES, default=MAX_LINES, help_text="parts of all of them together: the fewer, the longer they are"
     )
-    polygon = DrawnAreaSerializer(required=False, help_text="only parts with an end in it; as of POST /assets/within")
+    polygon = DrawnAreaSerializer(required=False, help_text="only parts that come into it; as of POST /assets/within")
 
 
 class BridgesOutputSerializer(serializers.Serializer):

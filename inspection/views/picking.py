@@ -190,6 +190,8 @@ class LineParts(APIView):
         ends = tuple(positions_of(request, "ends", 2)) if request.query_params.get("ends") else None
         try:
             found = picking.parts_of_asset(line, part_m, ends)
+        except picking.NoStretch as error:
+            raise invalid("ends", _("Both ends are the same point of the line.")) from error
         except picking.NotOneLine as error:
             raise ApiProblem(400, "not_one_line", _("This asset is not drawn as one line, so it cannot be flown along.")) from error
         return Response({"parts": [_part_of(line, part) for part in found], "length_m": sum(part.length_m for part in found)})

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from planning.problem import BoolArray, FloatArray, Problem, Resources, Routes, Unassigned, Visit
+from planning.problem import BoolArray, FloatArray, IntArray, Problem, Resources, Routes, Unassigned, Visit
 
 JOINED_M = 1e-6  # from the end of a part to the begin of the next
 
@@ -166,8 +166,9 @@ def chains_of(problem: Problem) -> list[Chain]:
     found: list[Chain] = []
     seen: set[int] = set()
     before = {right: left for left, right in next_of.items()}
-    for begin in ways.tolist():
-        if begin in before or begin not in next_of or problem.visits[begin].target in seen:
+    open_ends = [way for way in next_of if way not in before]
+    for begin in (*open_ends, *next_of):  # what is left after those that begin somewhere is closed, and begins anywhere
+        if problem.visits[begin].target in seen:
             continue
         forward = [begin]
         while forward[-1] in next_of and next_of[forward[-1]] != begin:
@@ -181,14 +182,14 @@ def _is_stretch(problem: Problem, visits: Sequence[int]) -> bool:
     return len(visits) == 2 and {problem.visits[visit].is_reversed for visit in visits} == {False, True}
 
 
-def _alike(problem: Problem, ways: np.ndarray, target_of: np.ndarray) -> np.ndarray:
+def _alike(problem: Problem, ways: IntArray, target_of: IntArray) -> BoolArray:
     """Whether two ways weigh the same and are allowed to the same UAVs, (ways, ways)."""
-    weight = problem.left_out_weights[target_of]
-    alike = weight[:, None] == weight
+    asked = problem.left_out_weights[target_of][None]
     if problem.allowed is not None:
-        allowed = problem.allowed[:, ways]
-        alike &= (allowed[:, :, None] == allowed[:, None, :]).all(axis=0)
-    return np.asarray(alike)
+        asked = np.vstack([asked, problem.allowed[:, ways]])
+    _columns, number = np.unique(asked, axis=1, return_inverse=True)
+    alike: BoolArray = number.reshape(-1, 1) == number.reshape(1, -1)
+    return alike
 
 
 def in_pieces(problem: Problem, chains: Sequence[Chain], most: int) -> Reduced:

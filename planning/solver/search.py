@@ -93,8 +93,11 @@ def best_found(
     stop: Stop,
     on_look: Callable[[float, Found], None],
     start: Routes = (),
+    is_bounded: bool = True,
 ) -> Found:
-    """The best plan of all chains, and a bound that is worked out beside them; it is no worse than `start`, if that keeps all limits.
+    """The best plan of all chains, and a bound that is worked out beside them unless it is not `is_bounded`.
+
+    The plan is no worse than `start`, if that keeps all limits.
 
     Without a time to search each chain makes a fixed number of rounds, and the answer depends on the problem and the seed alone; with
     one they go on until it is over. `stop` is asked and `on_look` told the share of the search ten times a second.
@@ -122,7 +125,7 @@ def best_found(
     with ThreadPoolExecutor(CHAINS + 1, "search") as pool:
         chains = list(pool.map(lambda number: Chain.begin(arrays, seed, number, start), range(CHAINS)))
         first = _best(problem, chains)
-        bounding = pool.submit(lower_bound, problem, usable, needed_m, first, seed=seed)
+        bounding = pool.submit(lower_bound, problem, usable, needed_m, first, seed=seed) if is_bounded else None
         flights = [pool.submit(fly, chain) for chain in chains]
         try:
             looks = 0
@@ -132,15 +135,15 @@ def best_found(
                     share.now = min(1.0, looks * LOOK_INTERVAL_S / search_s)
                 if stop():
                     is_over.set()
-                on_look(share.now, Found(_best(problem, chains), bounding.result() if bounding.done() else None))
+                on_look(share.now, Found(_best(problem, chains), bounding.result() if bounding and bounding.done() else None))
         finally:
             is_over.set()
             timer.cancel()
         for flight in flights:
             flight.result()
         best = _best(problem, chains)
-        bound = bounding.result()
-    if merit(problem, best)[0] < merit(problem, first)[0]:  # more is certain to be visited
+        bound = None if bounding is None else bounding.result()
+    if bound is not None and merit(problem, best)[0] < merit(problem, first)[0]:  # more is certain to be visited
         bound = max(bound, lower_bound(problem, usable, needed_m, best, seed=seed))
     return Found(best, bound)
 

@@ -1,6 +1,7 @@
 """Assignment and order: proven for a few targets, else the best plan of several searches side by side, with a bound below it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from operation.reasons import Reason
 from planning.problem import BoolArray, FloatArray, Objective, Problem, Routes, Solution, Unassigned
@@ -76,40 +77,74 @@ def _solved(
     if not usable.any():
         routes = ((),) * len(problem.uavs)
         return routes, reasons(problem, needed_m, routes), None, EXACT
-    start = _plan_of_pieces(problem, stop=stop, on_progress=on_progress, seed=seed, search_s=PIECES_SHARE * search_s)
-    rest_s = search_s if start is None else (1.0 - PIECES_SHARE) * search_s
-    found = searched_plan(problem, usable, needed_m, stop=stop, on_progress=on_progress, seed=seed, search_s=rest_s, start=start or ())
+    pieces = _in_pieces(problem)
+    searched_s = search_s * PIECES_SHARE * sum(map(_is_searched, pieces)) / len(PIECES)
+    start = _plan_of_pieces(pieces, stop=stop, on_progress=on_progress, seed=seed, search_s=searched_s)
+    found = searched_plan(
+        problem,
+        usable,
+        needed_m,
+        stop=stop,
+        on_progress=_from(PIECES_SHARE, on_progress) if pieces else on_progress,
+        seed=seed,
+        search_s=search_s - searched_s,
+        start=start,
+    )
     return found.routes, reasons(problem, needed_m, found.routes), found.bound, SEARCH
 
 
-def _plan_of_pieces(problem: Problem, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float) -> Routes | None:
-    """Return the best plan found with the parts of each line flown in few pieces: first whole, then cut more and more often.
-
-    None where no target is a part of a line. What is too far for a UAV in such a piece is left out.
-    """
+def _in_pieces(problem: Problem) -> list[Reduced]:
+    """Return the problem with the parts of each line in few pieces: first whole, then cut more and more often; none without such parts."""
     chains = chains_of(problem)
-    if not chains:
-        return None
-    routes: Routes | None = None
-    for most in PIECES:
-        coarse = in_pieces(problem, chains, most)
-        if coarse.problem.target_count == problem.target_count or stop():
+    pieces = [in_pieces(problem, chains, most) for most in PIECES] if chains else []
+    return [coarse for coarse in pieces if coarse.problem.target_count < problem.target_count]
+
+
+def _is_searched(coarse: Reduced) -> bool:
+    return coarse.problem.target_count > exact.MAX_TARGETS
+
+
+def _plan_of_pieces(pieces: Sequence[Reduced], *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float) -> Routes:
+    """Return the best plan found with lines in pieces, each search beginning with the plan of the one before.
+
+    What is too far for a UAV in such a piece is left out.
+    """
+    routes: Routes = ()
+    for number, coarse in enumerate(pieces):
+        if stop():
             break
-        start = None if routes is None else coarse.contracted(routes)
-        routes = coarse.expanded(_routes(coarse, start or (), stop, on_progress, seed, search_s / len(PIECES)))
+        problem = coarse.problem
+        if not _is_searched(coarse):
+            routes = coarse.expanded(exact.proven_routes(Arcs.of(problem))[0])
+            continue
+        needed_m = needed_range_m(problem)
+        usable = reachable(problem, needed_m)
+        if not usable.any():
+            continue
+        share = number / len(pieces)
+
+        def on_look(own: float, found: Found, coarse: Reduced = coarse, share: float = share) -> None:
+            at = PIECES_SHARE * (share + own / len(pieces))
+            on_progress(Progress(at, progress_message(coarse.problem, found.routes), coarse.expanded(found.routes)))
+
+        found = best_found(
+            problem,
+            usable,
+            needed_m,
+            seed=seed,
+            search_s=search_s / sum(map(_is_searched, pieces)),
+            stop=stop,
+            on_look=on_look,
+            start=coarse.contracted(routes) or (),
+            is_bounded=False,
+        )
+        routes = coarse.expanded(found.routes)
     return routes
 
 
-def _routes(coarse: Reduced, start: Routes, stop: Stop, on_progress: OnProgress, seed: int, search_s: float) -> Routes:
-    problem = coarse.problem
-    if problem.target_count <= exact.MAX_TARGETS:
-        return exact.proven_routes(Arcs.of(problem))[0]
-    needed_m = needed_range_m(problem)
-    tell = lambda reported: on_progress(_expanded(reported, coarse.expanded))  # noqa: E731
-    usable = reachable(problem, needed_m)
-    if not usable.any():
-        return ((),) * len(problem.uavs)
-    return searched_plan(problem, usable, needed_m, stop=stop, on_progress=tell, seed=seed, search_s=search_s, start=start).routes
+def _from(begin: float, on_progress: OnProgress) -> OnProgress:
+    """Return what tells of the rest of a search, of which so much is over."""
+    return lambda told: on_progress(replace(told, share=begin + (1.0 - begin) * told.share))
 
 
 def searched_plan(

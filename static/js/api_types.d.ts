@@ -4477,7 +4477,7 @@ export interface components {
              * @default 500
              */
             most: number;
-            /** @description only parts with an end in it; as of POST /assets/within */
+            /** @description only parts that come into it; as of POST /assets/within */
             polygon?: components["schemas"]["DrawnAreaRequest"];
         };
         Passkey: {

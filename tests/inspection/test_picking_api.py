@@ -306,7 +306,9 @@ def test_a_railway_is_divided_at_its_vertices(client: Client) -> None:
     assert len(client.get(f"/api/v1/assets/{track.pk}/parts").json()["parts"]) == 6
 
 
-@pytest.mark.parametrize("query", ["part_m=0", "part_m=x", "ends=10", "ends=10,56,11", "ends=56.0,10.0,nan,1", "ends=10,56,10,956"])
+@pytest.mark.parametrize(
+    "query", ["part_m=0", "part_m=x", "ends=10", "ends=10,56,11", "ends=56.0,10.0,nan,1", "ends=10,56,10,956", "ends=10,56,10,56"]
+)
 def test_parts_that_cannot_be_are_refused(client: Client, query: str) -> None:
     answer = client.get(f"/api/v1/assets/{line().pk}/parts?{query}")
     assert (answer.status_code, answer.json()["error"]["code"]) == (400, "invalid")
@@ -327,7 +329,7 @@ def test_several_lines_have_no_more_parts_together_than_asked_for(client: Client
         assert answer["length_m"] == pytest.approx(18_720 + 125 + 6_240, rel=0.01)
 
 
-def test_of_lines_in_an_area_only_the_parts_with_an_end_in_it_come(client: Client) -> None:
+def test_of_lines_in_an_area_only_the_parts_that_come_into_it_are_given(client: Client) -> None:
     way = line_over(row_of_towers(*(10.0 + 0.01 * number for number in range(31))), length_m=18_700.0)
     elsewhere = line_over(row_of_towers(11.0, 11.05), length_m=3_100.0)
     ring = [[10.095, 55.9], [10.205, 55.9], [10.205, 56.1], [10.095, 56.1]]
@@ -336,6 +338,8 @@ def test_of_lines_in_an_area_only_the_parts_with_an_end_in_it_come(client: Clien
     assert {part["line"]["id"] for part in parts} == {way.pk}
     assert all(any(10.095 <= lon <= 10.205 for lon, _ in part["stretch"]) for part in parts)
     assert parts[0]["stretch"][0][0] <= 10.1 and parts[-1]["stretch"][1][0] >= 10.2
+    narrow = [[10.1425, 55.9], [10.1435, 55.9], [10.1435, 56.1], [10.1425, 56.1]]
+    assert len(post(client, "parts", body | {"polygon": {"type": "Polygon", "coordinates": [narrow]}}).json()["parts"]) == 1
     assert len(post(client, "parts", body | {"most": 3}).json()["parts"]) <= 3
 
 

@@ -3,10 +3,10 @@
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./options/flight_options.js";
-import { isUsualTask, isWhole, taskOf } from "./tasks.js";
+import { isUsualTask, taskOf } from "./tasks.js";
 
 /** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Wishes } from "./types.d.ts" */
-/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, StretchPart, SelectionTarget, TargetInputRequest, UavInputRequest } from "../api_types.d.ts" */
+/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, UavInputRequest } from "../api_types.d.ts" */
 
 /**
  * Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last
@@ -48,6 +48,7 @@ export function targetOf({ id, kind, properties, centre = null, position = null,
     label: properties.label || kind,
     detail: detailOf(kind, properties, position, stretch),
     line: properties.line ?? null,
+    length_m: properties.length_m ?? null,
     position,
     stretch,
     centre: position ?? centre,
@@ -76,70 +77,6 @@ export function placeTarget([longitude, latitude]) {
 /** A target from a short row of the API: a list, an area, a stretch. @param {PickedAsset} row */
 export function targetOfRow({ id, kind, centre, ...properties }) {
   return targetOf({ id, kind, properties, centre });
-}
-
-/**
- * A part of a line or railway as a target. @param {StretchPart} part @returns {PickedTarget}
- */
-export function targetOfPart({ line, label, stretch, length_m }) {
-  const [[west, south], [east, north]] = stretch;
-  const centre = Math.abs(east - west) > 180 ? [west, south] : [(west + east) / 2, (south + north) / 2];
-  return targetOf({ id: line.id, kind: line.kind, properties: { ...line, label, length_m }, centre, stretch });
-}
-
-const PART = /^(.*), km ([\d.]+)–([\d.]+)$/s;
-
-/** The label of the line that a part belongs to: the server calls parts "E402, km 9.8–10.8". @param {string} label */
-export const lineOfPart = (label) => PART.exec(label)?.[1] ?? label;
-
-/**
- * The label of several parts of one line: "E402, km 0.0–10.8" where each begins at the end of another, else that of the line.
- *
- * @param {string[]} labels
- */
-export function labelOfParts(labels) {
-  const extents = labels.map((label) => PART.exec(label)?.slice(2).map(Number) ?? [Number.NaN, Number.NaN]);
-  extents.sort(([a], [b]) => a - b);
-  const isWhole = extents.every(([from], at) => at === 0 || from === extents[at - 1][1]);
-  const line = lineOfPart(labels[0]);
-  return isWhole ? `${line}, km ${extents[0][0].toFixed(1)}–${extents[extents.length - 1][1].toFixed(1)}` : line;
-}
-
-/** Whether it is a line or railway from end to end. @param {Pick<PickedTarget, "kind" | "position" | "stretch">} target */
-export const isWholeLine = (target) => isWhole(target) && !target.stretch;
-
-/**
- * The selection with parts in place of a target; they get its task and wishes.
- *
- * @param {MissionSelection} selection
- * @param {string} key
- * @param {PickedTarget[]} parts
- * @returns {MissionSelection}
- */
-export function withParts(selection, key, parts) {
-  const targets = selection.targets.flatMap((target) =>
-    target.key === key ? parts.map((part) => ({ ...part, task: target.task, ...wishesOf(target) })) : [target],
-  );
-  return withTargets({ ...selection, targets: [] }, targets);
-}
-
-/**
- * The selection with the whole line in place of all of its parts; it gets the task and the wishes of the first.
- *
- * @param {MissionSelection} selection
- * @param {number} line
- * @returns {MissionSelection}
- */
-export function withWholeLine(selection, line) {
-  const isPart = (/** @type {PickedTarget} */ target) => target.asset === line && target.stretch !== null;
-  const first = selection.targets.find(isPart);
-  if (!first) return selection;
-  const place = { ...first, stretch: null };
-  const whole = { ...place, key: keyOf(place), label: lineOfPart(first.label), detail: extentOf(first.kind) ?? "" };
-  const others = selection.targets.filter(
-    (target) => target === first || (!isPart(target) && target.key !== whole.key),
-  );
-  return { ...selection, targets: others.map((target) => (target === first ? whole : target)) };
 }
 
 /**

@@ -88,6 +88,8 @@ export interface PickedTarget extends Partial<Wishes>, Pick<TargetInputRequest, 
   detail: string;
   /** id of the line that a support carries */
   line?: number | null;
+  /** of a line, railway or part that was picked on this page */
+  length_m?: number | null;
   /** one point of a line or railway, or the place itself */
   position: number[] | null;
   /** ends of a part of a line */

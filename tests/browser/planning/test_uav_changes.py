@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks
+from tests.browser.operator_map import asks, unlimited_type
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.planning.test_planning import sends
 from tests.browser.planning.test_safe_routes import opens
@@ -34,7 +34,7 @@ def waits_for_changes(page: Page, mission: dict[str, Any], count: int) -> None:
 def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     battery = {"battery_wh": 700.0, "mass_kg": 4.0, "max_airspeed_mps": 15.0}
-    swift = sends(page, "uavs", {"name": "Swift", "position": region.east, **battery})
+    swift = sends(page, "uavs", {"name": "Swift", "type": unlimited_type(page), "position": region.east, **battery})
     towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
     picked = [{"asset": tower["id"]} for tower in towers[:: len(towers) // 4][:4]]
     uavs = [{"id": swift["id"]}, {"name": "Heron", "position": region.west}]

@@ -54,14 +54,16 @@ test("what is picked already, and towers of lines that are picked whole, are lef
     [3],
   );
   assert.equal(found.covered, 2);
-  const part = targetOf({
-    id: 100,
-    kind: "line",
-    properties: { label: "L100" },
-    stretch: [
-      [9, 50],
-      [9, 51],
-    ],
-  });
-  assert.equal(notPickedYet(rows, [part]).covered, 0);
+  const part = (south) =>
+    targetOf({
+      id: 100,
+      kind: "line",
+      properties: { label: "L100" },
+      stretch: [
+        [9, south],
+        [9, south + 1],
+      ],
+    });
+  assert.equal(notPickedYet(rows, [part(50)]).covered, 2);
+  assert.equal(notPickedYet(rows, [part(51)]).covered, 0);
 });

@@ -5,9 +5,10 @@ import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import * as picks from "../selection.js";
 import { linesOf, notPickedYet } from "../targets/caught.js";
+import { isWholeLine, targetOfPart, withJoinedParts, withParts } from "../targets/line_parts.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { BridgesOutput, LinePartsOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */
+/** @import { AssetDetailFeature, BridgesOutput, LinePartsOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */
 /** @import { MissionContext, PickedTarget } from "../types.d.ts" */
 
 /** @typedef {(targets: PickedTarget[], words: (added: string) => string) => number} AddMany adds many at once and announces it */
@@ -78,13 +79,14 @@ function createAreaPicking({ store, problem, failed, selection }, addMany) {
       const { caught } = store.state;
       if (!caught) return;
       const polygon = { type: "Polygon", coordinates: [caught.ring] };
-      const most = Math.max(1, picks.MAX_TARGETS - selection().targets.length);
+      const most = picks.MAX_TARGETS - selection().targets.length;
       try {
         const { data } = /** @type {Answer<LinePartsOutput>} */ (
           await post("/assets/parts", { assets: linesOf(caught.chosen), most, polygon })
         );
-        store.update({ caught: null, tool: "point" });
-        addMany(data.parts.map(picks.targetOfPart), (added) => t("{added} to fly along.", { added }));
+        if (store.state.caught?.rows !== caught.rows) return;
+        if (addMany(data.parts.map(targetOfPart), (added) => t("{added} to fly along.", { added })))
+          store.update({ caught: null, tool: "point" });
       } catch (error) {
         failed(t("The line could not be read."), error);
       }
@@ -171,7 +173,7 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
   async function addWhole(target) {
     const { asset } = target;
     const isPicked = selection().targets.some(({ key }) => key === target.key);
-    if (asset === null || isPicked || !picks.isWholeLine(target)) {
+    if (asset === null || isPicked || !isWholeLine(target)) {
       addTargets([target]);
       return;
     }
@@ -185,13 +187,13 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
     if (addTargets(parts ?? [target]) && parts)
       toast(sharedWords(target.label, parts.length), {
         label: t("One UAV flies it whole"),
-        act: () => flyWhole(asset),
+        act: () => void flyWhole(asset),
       });
   }
 
   /** What a search has found: its lines in parts, as far as a mission takes them. @param {PickedTarget[]} targets */
   async function addFound(targets) {
-    const lines = targets.filter((target) => target.asset !== null && picks.isWholeLine(target));
+    const lines = targets.filter((target) => target.asset !== null && isWholeLine(target));
     const others = targets.filter((target) => !lines.includes(target));
     const most = picks.MAX_TARGETS - selection().targets.length - others.length;
     const words = (/** @type {string} */ added) => t("{added} from the search.", { added });
@@ -206,8 +208,8 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
         (target) => sharedParts(data.parts.filter(({ line }) => line.id === target.asset)) ?? [target],
       );
       addMany([...others, ...shared], words);
-    } catch (error) {
-      failed(t("The line could not be read."), error);
+    } catch {
+      addMany(targets, words); // whole
     }
   }
 
@@ -217,8 +219,8 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
       const divided = await Promise.all(
         followed.map(async (part) =>
           part.length_m < SHARED_FROM_M
-            ? [picks.targetOfPart(part)]
-            : (await partsOf(part.line.id, part.stretch)).map(picks.targetOfPart),
+            ? [targetOfPart(part)]
+            : (await partsOf(part.line.id, part.stretch)).map(targetOfPart),
         ),
       );
       addMany(divided.flat(), (added) => t("{added} to fly along.", { added }));
@@ -232,18 +234,26 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
     if (asset === null) return;
     try {
       const parts = sharedParts(await partsOf(asset));
+      const count = selection().targets.length - 1 + (parts?.length ?? 0);
       if (!parts) toast(t("{name} is too short to share.", { name: label }));
-      else if (change(picks.withParts(selection(), key, parts))) toast(sharedWords(label, parts.length), undo());
+      else if (count > picks.MAX_TARGETS) toast(t("A mission takes {most} targets.", { most: picks.MAX_TARGETS }));
+      else if (change(withParts(selection(), key, parts))) toast(sharedWords(label, parts.length), undo());
     } catch (error) {
       failed(t("The line could not be read."), error);
     }
   }
 
-  /** The whole line in place of its parts. @param {number} line */
-  function flyWhole(line) {
-    const label = selection().targets.find(({ asset, stretch }) => asset === line && stretch)?.label ?? "";
-    if (change(picks.withWholeLine(selection(), line)))
-      toast(t("One UAV flies {name} from end to end.", { name: picks.lineOfPart(label) }), undo());
+  /** One target in place of the parts of a line that follow one another. @param {number} line */
+  async function flyWhole(line) {
+    try {
+      const { data } = /** @type {Answer<AssetDetailFeature>} */ (await get(`/assets/${line}`));
+      const { kind, centre } = data.properties;
+      const whole = picks.targetOf({ id: line, kind, properties: data.properties, centre });
+      if (change(withJoinedParts(selection(), whole)))
+        toast(t("One UAV flies {name} from end to end.", { name: whole.label }), undo());
+    } catch (error) {
+      failed(t("The line could not be read."), error);
+    }
   }
 
   return { addWhole, addFound, addStretch, share, flyWhole };
@@ -252,7 +262,7 @@ function createSharing({ failed, selection, change, history }, { addMany, addTar
 /** The targets of a line's parts; null where it is too short to share. @param {StretchPart[]} parts */
 function sharedParts(parts) {
   const length_m = parts.reduce((sum, part) => sum + part.length_m, 0);
-  return parts.length < 2 || length_m < SHARED_FROM_M ? null : parts.map(picks.targetOfPart);
+  return parts.length < 2 || length_m < SHARED_FROM_M ? null : parts.map(targetOfPart);
 }
 
 /** @param {string} name @param {number} count */

@@ -81,6 +81,7 @@ export function mountCaught(frame, store, actions) {
     add.disabled = count === 0 || count > room;
     const lines = linesOf(caught.chosen).length;
     along.hidden = lines === 0;
+    along.disabled = lines > room;
     along.textContent = tn(lines, "Fly along its line", "Fly along their {count} lines");
     why.textContent = count > room ? t("A mission takes {most} targets.", { most: numberText(MAX_TARGETS) }) : "";
     if (isNew) (add.disabled ? cancel : add).focus({ preventScroll: true });

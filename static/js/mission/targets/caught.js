@@ -36,7 +36,7 @@ const WORDS = {
 const NAMES = ["kind", "line", "voltage"];
 
 /**
- * Rows that are not picked yet, and how many towers stand on lines that are picked whole.
+ * Rows that are not picked yet, and how many towers stand on lines that are picked whole, or in parts that begin or end near them.
  *
  * @param {PickedAsset[]} rows
  * @param {PickedTarget[]} targets
@@ -47,9 +47,33 @@ export function notPickedYet(rows, targets) {
     targets.filter(({ kind, position, stretch }) => kind === "line" && !position && !stretch).map(({ asset }) => asset),
   );
   const fresh = rows.filter(({ id }) => !keys.has(keyOf({ asset: id, position: null, stretch: null })));
-  const kept = fresh.filter(({ line }) => line === null || !lines.has(line));
+  const boxes = partBoxes(targets);
+  const kept = fresh.filter(
+    ({ line, centre }) =>
+      line === null || !(lines.has(line) || (boxes.get(line) ?? []).some((box) => isIn(box, centre))),
+  );
   return { rows: kept, covered: fresh.length - kept.length };
 }
+
+const PART_MARGIN_DEG = 0.0005; // a part bends a little between its ends
+
+/** The boxes round the ends of picked parts, by line. @param {PickedTarget[]} targets */
+function partBoxes(targets) {
+  /** @type {Map<number, number[][]>} */
+  const boxes = new Map();
+  for (const { asset, kind, stretch } of targets)
+    if (kind === "line" && asset !== null && stretch) {
+      const [west, east] = [Math.min(stretch[0][0], stretch[1][0]), Math.max(stretch[0][0], stretch[1][0])];
+      const [south, north] = [Math.min(stretch[0][1], stretch[1][1]), Math.max(stretch[0][1], stretch[1][1])];
+      const box = [west - PART_MARGIN_DEG, south - PART_MARGIN_DEG, east + PART_MARGIN_DEG, north + PART_MARGIN_DEG];
+      boxes.set(asset, [...(boxes.get(asset) ?? []), box]);
+    }
+  return boxes;
+}
+
+/** @param {number[]} box @param {readonly number[]} place */
+const isIn = ([west, south, east, north], [longitude, latitude]) =>
+  west <= longitude && longitude <= east && south <= latitude && latitude <= north;
 
 /**
  * The groups to choose by, where there are several; the largest first.

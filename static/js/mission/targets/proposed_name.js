@@ -1,7 +1,8 @@
 /** The name that a mission is proposed, from what is picked. Values in, values out. */
 
 import { countedByKind } from "../../domain/counted.js";
-import { lineOfPart, nameOf } from "../selection.js";
+import { nameOf } from "../selection.js";
+import { lineOfPart } from "./line_parts.js";
 
 /** @import { PickedTarget } from "../types.d.ts" */
 

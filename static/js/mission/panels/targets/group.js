@@ -3,12 +3,12 @@
 import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
-import { labelOfParts } from "../../selection.js";
+import { labelOfParts } from "../../targets/line_parts.js";
 
 /** @import { PickedTarget } from "../../types.d.ts" */
 /** @import { RowState } from "./row.js" */
 
-/** @typedef {{ key: string, line: number, words: string, keys: string[], isOfParts: boolean }} LineGroup `key`: of its first target */
+/** @typedef {{ key: string, run: string, words: string, keys: string[], isOfParts: boolean }} LineGroup `key`: of its first target, `run`: line and route */
 /** @typedef {Map<string, NonNullable<RowState["place"]>>} Places in the plan, by key */
 
 const MIN_TARGETS = 13; // shorter lists are seen whole
@@ -35,7 +35,7 @@ export function lineGroups(targets, routeOf = () => undefined) {
       runs[runs.length - 1].keys.push(key);
       labels[labels.length - 1].push(label);
     } else if (on !== null) {
-      runs.push({ key, line: on, words: detail || label, keys: [key], isOfParts });
+      runs.push({ key, run, words: detail || label, keys: [key], isOfParts });
       labels.push([label]);
     }
     before = run;
@@ -69,11 +69,11 @@ export function withoutFolded(targets, groups, isFolded) {
 export function createGroups(changed, most, remove) {
   /** @type {Map<string, LineGroup>} by the key of the first target */
   let groups = new Map();
-  /** @type {Map<number, boolean>} by line, where the user has decided */
+  /** @type {Map<string, boolean>} by line and route, where the user has decided */
   const folded = new Map();
   let isLong = false;
   /** @param {LineGroup} group */
-  const isFolded = ({ line, isOfParts }) => folded.get(line) ?? (isLong || isOfParts);
+  const isFolded = ({ run, isOfParts }) => folded.get(run) ?? (isLong || isOfParts);
   return {
     /** @param {PickedTarget[]} all */
     none(all) {
@@ -96,7 +96,7 @@ export function createGroups(changed, most, remove) {
     refresh(row, target, places) {
       const group = groups.get(target.key);
       const toggle = () => {
-        if (group) folded.set(group.line, !isFolded(group));
+        if (group) folded.set(group.run, !isFolded(group));
         changed();
       };
       refreshGroup(

@@ -178,7 +178,7 @@ function more(target, actions) {
   const { asset } = target;
   if (!isWhole(target) || asset === null) return [];
   const share = target.stretch
-    ? { icon: target.kind, words: t("One UAV flies it whole"), act: () => actions.flyWhole(asset) }
+    ? { icon: target.kind, words: t("One UAV flies it whole"), act: () => void actions.flyWhole(asset) }
     : { icon: "replace", words: t("Share it among UAVs"), act: () => void actions.share(target) };
   return target.kind === "line"
     ? [share, { icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(asset) }]
