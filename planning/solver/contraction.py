@@ -9,6 +9,7 @@ import numpy as np
 from planning.problem import BoolArray, FloatArray, IntArray, Problem, Resources, Routes, Unassigned, Visit
 
 JOINED_M = 1e-6  # from the end of a part to the begin of the next
+HAIR = 1e-6  # metres, seconds or Wh: rounding
 
 
 @dataclass(frozen=True)
@@ -223,3 +224,45 @@ def _through(problem: Problem, way: Sequence[int]) -> Run:
     for visit in way[1:]:
         run = onward(problem, run, visit)
     return run
+
+
+def with_runs(problem: Problem, chains: Sequence[Chain], routes: Routes) -> Routes:
+    """Return the routes with neighbouring parts of a line one after the other where that costs nothing.
+
+    Out along a line and back it is all the same to metres which part is done on which way; in flight each turn costs time.
+    """
+    return tuple(_with_runs(problem, chains, uav, route) for uav, route in enumerate(routes))
+
+
+def _with_runs(problem: Problem, chains: Sequence[Chain], uav: int, route: tuple[int, ...]) -> tuple[int, ...]:
+    for chain in chains:
+        place_of = {problem.visits[visit].target: place for place, visit in enumerate(chain.forward)}
+        done = sorted(place_of[target] for visit in route if (target := problem.visits[visit].target) in place_of)
+        runs = np.split(done, np.flatnonzero(np.diff(done) > 1) + 1) if done else []
+        for begin, end in ((int(run[0]), int(run[-1]) + 1) for run in runs if len(run) > 1):
+            route = _with_run(problem, chain, uav, route, begin, end)
+    return route
+
+
+def _with_run(problem: Problem, chain: Chain, uav: int, route: tuple[int, ...], begin: int, end: int) -> tuple[int, ...]:
+    """Return the route with the parts from begin to before end of a chain at one go, where the first or the last of them was."""
+    count = len(chain.forward)
+    ways = chain.forward[begin:end], chain.backward[count - end : count - begin]
+    own = {*ways[0], *ways[1]}
+    rest = [visit for visit in route if visit not in own]
+    places = [place for place, visit in enumerate(route) if visit in own]
+    slots = {places[0], places[-1] + 1 - len(places)}
+    candidates = [(*rest[:slot], *way, *rest[slot:]) for slot in sorted(slots) for way in ways]
+    most = _taken(problem, uav, route)
+    equal = [one for one in candidates if all(own <= limit + HAIR for own, limit in zip(_taken(problem, uav, one), most, strict=True))]
+    return min((route, *equal), key=lambda one: _turns(problem, one))
+
+
+def _taken(problem: Problem, uav: int, route: tuple[int, ...]) -> tuple[float, float, float]:
+    """Return what a route takes: metres, seconds and Wh."""
+    return problem.route_length_m(uav, route), problem.route_duration_s(uav, route), problem.route_wh(uav, route) or 0.0
+
+
+def _turns(problem: Problem, route: tuple[int, ...]) -> int:
+    """Return how often the next visit does not begin where the one before ends."""
+    return sum(bool(problem.between_m[left, right] > JOINED_M) for left, right in pairwise(route))

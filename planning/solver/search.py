@@ -123,7 +123,7 @@ def best_found(
     if search_s:
         timer.start()
     with ThreadPoolExecutor(CHAINS + 1, "search") as pool:
-        chains = list(pool.map(lambda number: Chain.begin(arrays, seed, number, start), range(CHAINS)))
+        chains = list(pool.map(lambda number: Chain.begin(arrays, seed, number, start if number == 0 else ()), range(CHAINS)))
         first = _best(problem, chains)
         bounding = pool.submit(lower_bound, problem, usable, needed_m, first, seed=seed) if is_bounded else None
         flights = [pool.submit(fly, chain) for chain in chains]

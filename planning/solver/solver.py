@@ -6,7 +6,7 @@ from dataclasses import replace
 from operation.reasons import Reason
 from planning.problem import BoolArray, FloatArray, Objective, Problem, Routes, Solution, Unassigned
 from planning.solver import exact
-from planning.solver.contraction import Reduced, chains_of, in_pieces
+from planning.solver.contraction import Chain, Reduced, chains_of, in_pieces, with_runs
 from planning.solver.locks import reduced
 from planning.solver.lower_bounds import lower_bound
 from planning.solver.problem_arrays import Arcs
@@ -77,7 +77,8 @@ def _solved(
     if not usable.any():
         routes = ((),) * len(problem.uavs)
         return routes, reasons(problem, needed_m, routes), None, EXACT
-    pieces = _in_pieces(problem)
+    chains = chains_of(problem)
+    pieces = _in_pieces(problem, chains)
     searched_s = search_s * PIECES_SHARE * sum(map(_is_searched, pieces)) / len(PIECES)
     start = _plan_of_pieces(pieces, stop=stop, on_progress=on_progress, seed=seed, search_s=searched_s)
     found = searched_plan(
@@ -90,12 +91,12 @@ def _solved(
         search_s=search_s - searched_s,
         start=start,
     )
-    return found.routes, reasons(problem, needed_m, found.routes), found.bound, SEARCH
+    routes = with_runs(problem, chains, found.routes)
+    return routes, reasons(problem, needed_m, routes), found.bound, SEARCH
 
 
-def _in_pieces(problem: Problem) -> list[Reduced]:
+def _in_pieces(problem: Problem, chains: Sequence[Chain]) -> list[Reduced]:
     """Return the problem with the parts of each line in few pieces: first whole, then cut more and more often; none without such parts."""
-    chains = chains_of(problem)
     pieces = [in_pieces(problem, chains, most) for most in PIECES] if chains else []
     return [coarse for coarse in pieces if coarse.problem.target_count < problem.target_count]
 

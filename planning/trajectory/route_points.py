@@ -14,7 +14,6 @@ from inspection.geodesy.wgs84 import short_distance_m
 from planning.task import Task
 from planning.trajectory.waypoints import END, NONE, PASS, START, TARGET, FloatArray, IntArray, RoutePoints, Waypoints
 
-ONWARD_POINTS = 3  # of a stretch that is flown on from the end of another without a point of its own there
 SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
 
 SAME_HEIGHT_M = 1e-6
@@ -51,10 +50,9 @@ def route_points(
 
     The route begins at transit height above the start, after a vertical climb, and ends above the place where the UAV hovers, lands or
     comes home to; without a home, over the last target. Each target has exactly one point of kind `target`: where it is, or where its
-    stretch is entered; the stretch's other vertices are passed and carry the target's index. Where a stretch begins at the end of the one
-    before, at the same height, that point stays the end of the other, and its own first one is its next vertex. A target that is
-    inspected from below transit height is reached by a vertical descent and left by a vertical climb, so that the UAV is never lower
-    than that between targets. Passing the same place twice in a row at the same height is one point.
+    stretch is entered; the stretch's other vertices are passed and carry the target's index. A target that is inspected from below
+    transit height is reached by a vertical descent and left by a vertical climb, so that the UAV is never lower than that between
+    targets. Passing the same place twice in a row at the same height is one point.
     """
     stops = [place for stop in targets for place in stop.positions]
     position, agl_m, kind, asset, target, own = _route_points(
@@ -110,17 +108,17 @@ def _route_points(
             lon, lat = passed.position[node, 0], passed.position[node, 1]
             at = _pass(lon, lat, passed.agl_m[node], passed.asset[node], transit_agl_m, at, written)
         lon, lat, low_m = stops.position[stop, 0], stops.position[stop, 1], stops.agl_m[number]
-        is_behind_stretch = kind[at - 1] == PASS and target[at - 1] != NONE and agl_m[at - 1] == low_m
-        if is_behind_stretch and stops.points[number] >= ONWARD_POINTS and _is_at(lon, lat, position, at - 1):
-            own[number] = at
-            at = _stretch(stops, number, stop, stop + 1, at, written, kind, target)
-            stop += stops.points[number]
-            continue
         at = _pass(lon, lat, max(low_m, transit_agl_m), stops.asset[number], transit_agl_m, at, written)
         if kind[at - 1] == PASS and target[at - 1] == NONE and agl_m[at - 1] == low_m:
             at -= 1  # the target's own point takes its place
         own[number] = at
-        at = _stretch(stops, number, stop, stop, at, written, kind, target)
+        for vertex in range(stop, stop + stops.points[number]):
+            lon, lat = stops.position[vertex, 0], stops.position[vertex, 1]
+            if vertex > stop and _is_at(lon, lat, position, at - 1):
+                continue
+            position[at, 0], position[at, 1], agl_m[at] = lon, lat, low_m
+            kind[at], asset[at], target[at] = TARGET if vertex == stop else PASS, stops.asset[number], stops.target[number]
+            at += 1
         stop += stops.points[number]
     if comes_home:
         for node in range(passed.first[-2], passed.first[-1]):
@@ -133,20 +131,6 @@ def _route_points(
     kind[at], asset[at] = END, NONE
     at += 1
     return position[:at].copy(), agl_m[:at].copy(), kind[:at].copy(), asset[:at].copy(), target[:at].copy(), own
-
-
-@njit(cache=True, nogil=True)
-def _stretch(stops: _Stops, number: int, begin: int, first: int, at: int, written: _Written, kind: IntArray, target: IntArray) -> int:
-    """Put in the points of a target, of which those from `begin` on are its own, from `first` on; returns how many points there are."""
-    position, agl_m, asset = written
-    for vertex in range(first, begin + stops.points[number]):
-        lon, lat = stops.position[vertex, 0], stops.position[vertex, 1]
-        if vertex > first and _is_at(lon, lat, position, at - 1):
-            continue
-        position[at, 0], position[at, 1], agl_m[at] = lon, lat, stops.agl_m[number]
-        kind[at], asset[at], target[at] = TARGET if vertex == first else PASS, stops.asset[number], stops.target[number]
-        at += 1
-    return at
 
 
 @njit(cache=True, nogil=True)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from inspection.geodesy import LonLat
-from planning.trajectory.route_points import ONWARD_POINTS, SAME_PLACE_DEG, TargetPoints
+from planning.trajectory.route_points import SAME_PLACE_DEG, TargetPoints
 from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 
@@ -25,14 +25,7 @@ def plain_route(
     for target, way in zip(targets, ways, strict=False):
         for node in way:
             add(node)
-        entry, end = target.positions[0], points[-1]
-        is_behind_stretch = end.kind is WaypointKind.PASS and end.target is not None and end.agl_m == target.agl_m
-        if is_behind_stretch and len(target.positions) >= ONWARD_POINTS and _is_same_place(entry, end.position):
-            points.append(RoutePoint(target.positions[1], WaypointKind.TARGET, target.agl_m, target.asset, target.target, target.task))
-            for position in target.positions[2:]:
-                if not _is_same_place(position, points[-1].position):
-                    points.append(RoutePoint(position, WaypointKind.PASS, target.agl_m, target.asset, target.target))
-            continue
+        entry = target.positions[0]
         add(RoutePoint(entry, WaypointKind.PASS, max(target.agl_m, transit_agl_m), target.asset))
         before = points[-1]
         if before.kind is WaypointKind.PASS and before.target is None and before.agl_m == target.agl_m:

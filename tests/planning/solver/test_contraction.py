@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from planning.problem import End, Objective, Problem, UavStart, Visit
-from planning.solver.contraction import chains_of, in_pieces
+from planning.solver.contraction import chains_of, in_pieces, with_runs
 from planning.solver.solver import SEARCH, solve
 
 PART_M = 1_000.0
@@ -118,3 +118,24 @@ def test_a_line_that_is_too_long_for_every_uav_is_shared_where_its_parts_are_in_
     assert found.unassigned == ()
     assert [len(route) for route in found.routes] == [8, 8]
     assert found.longest_m == pytest.approx(16_000.0)
+
+
+def test_parts_are_done_one_after_the_other_where_that_costs_nothing() -> None:
+    """Out along a line and back: first two parts on the way out, one on the way back, the next before the end."""
+    problem = lines_problem(5, lines=1, parts=8, uavs=1, towers=2)
+    [chain] = chains_of(problem)
+    start = replace(
+        problem,
+        from_start_m=problem.between_m[chain.backward[-1]][None],
+        to_start_m=problem.between_m[:, chain.forward[0]][:, None],
+    )
+    back = {problem.visits[visit].target: visit for visit in chain.backward}
+    out = chain.forward
+    route = (out[0], out[2], out[3], out[5], back[problem.visits[out[4]].target], back[problem.visits[out[1]].target])
+    [found] = with_runs(start, [chain], (route,))
+    assert found in (out[:6], tuple(back[problem.visits[visit].target] for visit in reversed(out[:6])))
+    assert start.route_length_m(0, found) == pytest.approx(start.route_length_m(0, route))
+    costly = (*out[:2], len(problem.visits) - 1, *out[2:4])
+    [kept] = with_runs(start, [chain], (costly,))
+    assert start.route_length_m(0, kept) <= start.route_length_m(0, costly) + 1e-6
+    assert sorted(kept) == sorted(costly) or {problem.visits[one].target for one in kept} == {problem.visits[one].target for one in costly}

@@ -58,17 +58,6 @@ def route(targets: list[TargetPoints], ways: list[Way], way_home: Way | None = N
     return draw(points_of(targets, ways, way_home))
 
 
-def test_a_stretch_that_begins_at_the_end_of_another_goes_on_from_there() -> None:
-    """A stretch of one leg keeps a point of its own: else it would have no leg."""
-    drawn = route([target(0, 1, 2, 3), target(1, 3, 4, 5), target(2, 5, 6), target(3, 6, 7, 8)], [[], [], [], []])
-    assert drawn == [
-        "start 0 @60", "target 1 @60 #0", "pass 2 @60 #0", "pass 3 @60 #0", "target 4 @60 #1", "pass 5 @60 #1",
-        "target 5 @60 #2", "pass 6 @60 #2", "target 7 @60 #3", "pass 8 @60 #3", "end 8 @60",
-    ]  # fmt: skip
-    lower = route([target(0, 1, 2, 3), target(1, 3, 4, 5, agl_m=70.0)], [[], []])
-    assert "target 3 @70 #1" in lower
-
-
 NODES = st.lists(st.tuples(st.integers(0, 4), st.sampled_from([30.0, 60.0, 75.0])), max_size=4)
 
 
