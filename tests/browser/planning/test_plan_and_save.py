@@ -48,6 +48,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     page.keyboard.press("w")
     clicks_at(page, things.line_point)
     page.get_by_role("button", name="One UAV flies it whole").click()
+    expect(page.get_by_text(re.compile("One UAV flies .* from end to end"))).to_be_visible()
     page.keyboard.press("v")
     expect(picked_so_far).to_have_count(4)
     kinds = page.locator("#target-list .target > .icon use").evaluate_all("uses => uses.map(use => use.getAttribute('href').split('#')[1])")
