@@ -61,10 +61,18 @@ def errors_along(flight: Flight, track: FlownTrack) -> tuple[FloatArray, FloatAr
     counted = track.is_in_air & ~track.is_coming_down & (place >= 1)
     flown, relative_m, to = frame.to_metres(track.position[counted]), track.relative_m[counted], place[counted]
     across_m, height_m = _from_leg(flown, relative_m, line, level_m, to)
-    before_across, before_height = _from_leg(flown, relative_m, line, level_m, np.maximum(to - 1, 1))
+    before_across, before_height = _from_leg(flown, relative_m, line, level_m, _legs_before(line, level_m)[to])
     is_cut = np.hypot(before_across, before_height) < np.hypot(across_m, height_m)
     sequences = np.array([waypoint.sequence for waypoint in flight.waypoints], dtype=np.float64)
     return np.where(is_cut, before_across, across_m), np.where(is_cut, before_height, height_m), sequences[to]
+
+
+def _legs_before(line: FloatArray, level_m: FloatArray) -> IntArray:
+    """Return for each place the end of the leg before the one that leads there, without those between waypoints at one place."""
+    is_leg = np.r_[False, (np.diff(line, axis=0) != 0.0).any(axis=1) | (np.diff(level_m) != 0.0)]
+    last = np.maximum.accumulate(np.where(is_leg, np.arange(len(line)), 0))
+    before: IntArray = np.maximum(np.r_[0, last[:-1]], 1)
+    return before
 
 
 def _from_leg(flown: FloatArray, relative_m: FloatArray, line: FloatArray, level_m: FloatArray, to: IntArray) -> tuple[FloatArray, ...]:

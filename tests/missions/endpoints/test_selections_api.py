@@ -43,7 +43,7 @@ def test_a_selection_comes_back_as_it_was_kept(client: Client) -> None:
     body = loaded.json()
     assert (body["name"], body["target_count"], body["missing"]) == ("South belt", 4, [])
     assert body["author"].startswith("operator-")
-    assert [target["label"] for target in body["targets"]] == ["T 1", "North", "North", "56.20000, 10.20000"]
+    assert [target["label"] for target in body["targets"]] == ["T 1", "North, km 0.0–1.3", "North", "56.20000, 10.20000"]
     assert body["targets"][0] == {
         "asset": mast.pk, "label": "T 1", "detail": "138 kV", "length_m": None, "kind": "tower", "line": None, "position": [10.0, 56.0],
         "stretch": None,

@@ -20,7 +20,7 @@ CURATED = re.compile(
 )
 # a POST because the question is long; nothing is stored
 ASKED_BY_ALL = {
-    "terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "report_presence",
+    "terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "list_parts_of_lines", "report_presence",
     "explain_unreached_target", "explain_route", "plan_legal_windows", "find_later_departure", "reachable_assets", "check_legs",
     "plan_views", "lookup_media",
 }  # fmt: skip
