@@ -78,7 +78,7 @@ def _solved(
         routes = ((),) * len(problem.uavs)
         return routes, reasons(problem, needed_m, routes), None, EXACT
     chains = chains_of(problem)
-    pieces = _in_pieces(problem, chains)
+    pieces = _coarse_problems(problem, chains)
     searched_s = search_s * PIECES_SHARE * sum(map(_is_searched, pieces)) / len(PIECES)
     start = _plan_of_pieces(pieces, stop=stop, on_progress=on_progress, seed=seed, search_s=searched_s)
     found = searched_plan(
@@ -95,7 +95,7 @@ def _solved(
     return routes, reasons(problem, needed_m, routes), found.bound, SEARCH
 
 
-def _in_pieces(problem: Problem, chains: Sequence[Chain]) -> list[Reduced]:
+def _coarse_problems(problem: Problem, chains: Sequence[Chain]) -> list[Reduced]:
     """Return the problem with the parts of each line in few pieces: first whole, then cut more and more often; none without such parts."""
     pieces = [in_pieces(problem, chains, most) for most in PIECES] if chains else []
     return [coarse for coarse in pieces if coarse.problem.target_count < problem.target_count]
