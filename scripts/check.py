@@ -36,7 +36,17 @@ PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 TEST_WORKERS = min(8, (os.cpu_count() or 2) + 1)  # some of their tests mostly wait
 TYPE_CHECKER = str(PROJECT_DIR / "node_modules" / "typescript-native" / "bin" / "tsc")
 SLOWEST_LISTED = 40  # tests of a step of 5 s and more
-BROWSER_WORKERS = 2  # each with a whole installation
+BROWSER_WORKERS = 1 if TEST_WORKERS <= 3 else 2  # each with a whole installation, which takes a core beside the other tests
+NOT_FAST = tuple(  # two thirds of the processor time of all tests, in four tenths of the tests
+    f"tests/{folder}"
+    for folder in (
+        "accounts/single_sign_on", "inspection/demo_region", "inspection/importers", "inspection/imports", "missions/commands",
+        "missions/planning", "missions/property_tests", "missions/replanning", "planning/separation", "planning/solver",
+        "planning/trajectory", "planning/views", "results/media_metadata", "scripts", "simulation", "telemetry/alerting",
+        "telemetry/alerts", "telemetry/gateway", "telemetry/links", "telemetry/live", "telemetry/record", "telemetry/returns",
+        "telemetry/scenarios", "telemetry/watch", "workspace/live", "workspace/sessions",
+    )
+)  # fmt: skip
 SITL, SITL_TESTS = "SPANWISE_SITL", "tests/telemetry/scenarios"
 
 
@@ -95,7 +105,8 @@ def steps(arguments: list[str]) -> list[Step]:
     if rest:
         expression = "not browser" if is_fast else "browser or not browser"
         return [_pytest("pytest", f"({expression}){without_long}", rest)]
-    found = [_pytest("tests", f"not browser{without_long}", ["--ignore=tests/browser"], workers=TEST_WORKERS)]
+    left_out = [f"--ignore={folder}" for folder in ("tests/browser", *(NOT_FAST if is_fast else ()))]
+    found = [_pytest("tests", f"not browser{without_long}", left_out, workers=TEST_WORKERS)]
     if not is_fast:
         found.append(
             _pytest("browser tests", f"browser{without_long}", ["tests/browser"], lane="browser", workers=BROWSER_WORKERS, dist="loadfile")

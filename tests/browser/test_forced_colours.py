@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import Locator, Page
 
 from tests.browser.conftest import Visitor
+from tests.cases import long
 
 pytestmark = pytest.mark.browser
 
@@ -36,7 +37,7 @@ def opened(page: Page, path: str) -> None:
     page.locator("html[data-loaded]").wait_for(state="attached")
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", ["light", *long("dark")])
 def test_the_chosen_is_told_from_the_others_in_forced_colours(visitor: Visitor, theme: str) -> None:
     page = visitor.signs_in("opal", theme=theme)
     page.emulate_media(forced_colors="active", color_scheme=theme)  # type: ignore[arg-type]

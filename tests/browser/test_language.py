@@ -126,6 +126,7 @@ def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor, pictur
     assert reader.found == {}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("language", "sign_in"), [("es", "Iniciar sesión"), ("fr", "Se connecter")])
 def test_main_pages_are_in_the_language_of_the_browser(
     visitor: Visitor, picture: Callable[[Page, str], None], language: str, sign_in: str

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts.check import SITL, TEST_WORKERS, steps
+from scripts.check import NOT_FAST, SITL, TEST_WORKERS, steps
 from scripts.places import PROJECT_DIR, CannotStart
 from scripts.test_run.lanes import Step, run_all
 from scripts.test_run.plugin import use_own_servers
@@ -91,6 +91,13 @@ def test_fast_leaves_the_browser_out_and_long_takes_the_long_tests_in() -> None:
     assert _expressions([]) == {"tests": "not browser and not long", "browser tests": "browser and not long"}
     assert _expressions(["--fast"]) == {"tests": "not browser and not long"}
     assert _expressions(["--long"]) == {"tests": "not browser", "browser tests": "browser"}
+
+
+def test_fast_leaves_out_folders_that_are_there_and_take_part_in_every_other_run() -> None:
+    assert [folder for folder in NOT_FAST if not [*(PROJECT_DIR / folder).rglob("test_*.py")]] == []
+    for arguments, are_left_out in (["--fast"], True), ([], False), (["--long"], False):
+        [command] = [step.command for step in steps(arguments) if step.name == "tests"]
+        assert all((f"--ignore={folder}" in command) == are_left_out for folder in NOT_FAST)
 
 
 def test_the_folder_of_the_browser_step_has_every_browser_test_and_no_other() -> None:

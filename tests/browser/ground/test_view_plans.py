@@ -64,6 +64,7 @@ def clicks_a_cone(page: Page, panel: Locator, photos: list[dict[str, Any]]) -> N
     assert math.dist(place.values(), chosen.values()) < CONE_PX
 
 
+@pytest.mark.long
 def test_photos_of_a_tower_are_planned_with_the_camera_of_a_type(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     a_type_gets_a_camera(page)

@@ -35,6 +35,7 @@ def departure(page: Page) -> Locator:
     return page.get_by_role("textbox", name="Departure")
 
 
+@pytest.mark.long
 def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_what_they_mean(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "In the wind", targets=4)

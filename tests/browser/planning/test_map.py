@@ -48,7 +48,7 @@ def test_nothing_around_the_map_lies_on_anything_else(visitor: Visitor, width: i
     assert ("#legend" in around["names"]) == (width > 720)
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", ["light", *long("dark")])
 def test_the_network_and_the_zones_are_drawn(visitor: Visitor, theme: str) -> None:
     page = visitor.signs_in("opal", theme=theme, draws=True)
     page.goto("/missions/new")

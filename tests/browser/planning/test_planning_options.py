@@ -140,6 +140,7 @@ def test_the_order_is_changed_and_locked_by_keyboard_alone(visitor: Visitor) -> 
     expect(page.get_by_role("button", name=f"UAV: Kite, {first}", exact=True)).to_be_focused()
 
 
+@pytest.mark.long
 def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal", **PHONE)
     sends(page, "bases", {"name": "Wishing yard", "position": region.at(0, 0.02)})

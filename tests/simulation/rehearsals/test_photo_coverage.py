@@ -214,6 +214,7 @@ def test_photos_as_planned_achieve_what_was_promised(here: World, client: Client
     assert (found["is_short"], found["missing"]) == (False, [])
 
 
+@pytest.mark.long
 def test_height_above_take_off_counts_more_than_a_height_above_the_sea_with_the_error_of_a_fix(here: World, client: Client) -> None:
     mission = planned(client, photographed(here.towers[2]))
     for capture, row in zip(captured(mission, photo_waypoints(mission)), photo_waypoints(mission), strict=True):
@@ -322,6 +323,7 @@ def test_a_mission_that_photographs_nothing_has_no_coverage(here: World, client:
     assert stranger.get(f"/api/v1/missions/{mission.pk}/coverage.csv").status_code == 404
 
 
+@pytest.mark.long
 def test_a_tower_that_is_gone_proves_nothing(here: World, client: Client) -> None:
     mission = planned(client, photographed(here.towers[2]))
     mission.targets.update(asset=None)

@@ -123,6 +123,7 @@ def test_the_same_seed_gives_the_same_track(mission: Mission, person: User) -> N
     assert tracks[0] == tracks[1]
 
 
+@pytest.mark.long
 def test_wind_that_the_uav_cannot_fly_in_fails_with_its_reason(mission: Mission, person: User) -> None:
     mission.mission_uavs.update(performance={"battery_wh": 56.6, "max_airspeed_mps": 11.0})  # an Iris
     Mission.objects.filter(pk=mission.pk).update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]})
