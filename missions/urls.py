@@ -12,13 +12,13 @@ from missions.views.approvals import (
     MissionNearestZone,
     MissionRevoke,
 )
+from missions.views.asset_inspections import AssetMissions, InspectedParts, InspectionsTile
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.coverage import MissionCoverage, MissionCoverageFile
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.manual_edits import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
-from missions.views.missions import AssetMissions
 from missions.views.plans import ReachableAssets
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.selections import SelectionDetail, SelectionList
@@ -86,6 +86,8 @@ urlpatterns = [
     path("bases/<int:base_id>", views.BaseDetail.as_view(), name="api-base"),
     path("bases/<int:base_id>/restore", views.BaseRestore.as_view(), name="api-base-restore"),
     path("assets/<int:asset_id>/missions", AssetMissions.as_view(), name="api-asset-missions"),
+    path("assets/<int:asset_id>/inspected-parts", InspectedParts.as_view(), name="api-inspected-parts"),
+    path("tiles/inspections/<int:zoom>/<int:column>/<int:row>", InspectionsTile.as_view(), name="api-inspections-tile"),
     path("selections", SelectionList.as_view(), name="api-selections"),
     path("selections/<int:selection_id>", SelectionDetail.as_view(), name="api-selection"),
 ]

@@ -91,6 +91,32 @@ def part_between(line: FloatArray, first: PlaceOnLine, second: PlaceOnLine, vert
     return LinePart(first.position, second.position, from_m, to_m)
 
 
+def place_along(line: FloatArray, vertex_m: FloatArray, along_m: float) -> LonLat:
+    """Return the place of a line that lies so far along it; vertex_m: as of vertex_lengths_m."""
+    lon, lat = (float(np.interp(along_m, vertex_m, line[:, column])) for column in (0, 1))
+    return LonLat(lon, lat)
+
+
+def newest_along(parts: Sequence[tuple[float, float]], length_m: float) -> list[tuple[float, float, int | None]]:
+    """Return a line in pieces from its first vertex to its last: from [m], to [m], and the number of the last part that covers it.
+
+    parts: from and to along the line, metres, oldest first; None is what no part covers. Pieces under SAME_LENGTH_M join the piece before.
+    """
+    ends_m = np.unique(np.clip([0.0, length_m, *(end_m for part in parts for end_m in part)], 0.0, length_m))
+    newest = np.full(len(ends_m) - 1, -1)
+    for number, part in enumerate(parts):
+        first, last = np.searchsorted(ends_m, np.clip(sorted(part), 0.0, length_m))
+        newest[first:last] = number
+    pieces: list[tuple[float, float, int | None]] = []
+    for (from_m, to_m), number in zip(pairwise(ends_m.tolist()), newest.tolist(), strict=True):
+        covered_by = None if number < 0 else number
+        if pieces and (covered_by == pieces[-1][2] or to_m - from_m < SAME_LENGTH_M):
+            pieces[-1] = (pieces[-1][0], to_m, pieces[-1][2])
+        else:
+            pieces.append((from_m, to_m, covered_by))
+    return pieces
+
+
 def parts_of_line(
     line: FloatArray, part_m: float, *, ends: tuple[PlaceOnLine, PlaceOnLine] | None = None, at: Sequence[int] | IntArray = ()
 ) -> list[LinePart]:

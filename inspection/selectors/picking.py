@@ -167,7 +167,7 @@ def parts_of_asset(asset: Asset, part_m: float, ends: Sequence[LonLat] | None = 
 
     Raises NotOneLine, and NoStretch where both ends are one place.
     """
-    course = _course(asset)
+    course = course_of(asset)
     stretch = None if ends is None else (nearest_on_line(course, ends[0]), nearest_on_line(course, ends[1]))
     parts = parts_of_line(course, part_m, ends=stretch, at=_vertices_at(_support_keys([asset]), course))
     if parts[0].start == parts[-1].end and len(parts) == 1 and ends is not None:
@@ -201,7 +201,7 @@ def parts_of_assets(lines: Sequence[Asset], most: int, area: GEOSGeometry | None
     area: only parts that come into it count. What is not one line is left out, as it cannot be flown along.
     """
     keys = _support_keys(lines)
-    flown = [(line, _course(line)) for line in lines if isinstance(line.geometry, LineString)]
+    flown = [(line, course_of(line)) for line in lines if isinstance(line.geometry, LineString)]
     cuts = [_vertices_at(keys, course) for _line, course in flown]
     longest_m, part_m = max((path_length_m(course) for _line, course in flown), default=0.0), DEFAULT_PART_M
     within = None if area is None else shapely.from_wkb(bytes(area.wkb))
@@ -226,14 +226,15 @@ def _course_of(part: LinePart, line: FloatArray) -> FloatArray:
 def label_between(line: Asset, start: LonLat, end: LonLat) -> str:
     """Return the label of a line's stretch between two places, or the line's own where it is not one line."""
     try:
-        course = _course(line)
+        course = course_of(line)
     except NotOneLine:
         return asset_label(line)
     part = part_between(course, nearest_on_line(course, start), nearest_on_line(course, end))
     return part_label(line, part.from_m, part.to_m)
 
 
-def _course(line: Asset) -> FloatArray:
+def course_of(line: Asset) -> FloatArray:
+    """Return the vertices of a line or railway, (n, 2), lon lat [deg]. Raises NotOneLine where it is not drawn as one line."""
     if not isinstance(line.geometry, LineString):
         raise NotOneLine
     return np.array(line.geometry.coords, dtype=np.float64)[:, :2]

@@ -2,11 +2,15 @@
 
 import contextlib
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from django.contrib.gis.db.models import GeometryField
+from django.contrib.gis.geos import Polygon
 from django.core.cache import cache
 from django.db import connection
+from django.db.models import BinaryField, F, FloatField, Func, QuerySet, Value
 from django.utils.translation import get_language
 
 from inspection.models import AssetKind
@@ -149,10 +153,46 @@ class NoSuchTile(Exception):
     """Raised for an address outside the pyramid of tiles."""
 
 
-def vector_tile(zoom: int, column: int, row: int) -> bytes:
-    """Return the Mapbox vector tile; empty where there is nothing. Raises NoSuchTile."""
+def _check_address(zoom: int, column: int, row: int) -> None:
     if not (0 <= zoom <= MAX_ZOOM and 0 <= column < 2**zoom and 0 <= row < 2**zoom):
         raise NoSuchTile
+
+
+def tile_of_rows(rows: QuerySet[Any], layer: str, fields: Sequence[str], zoom: int, column: int, row: int) -> bytes:
+    """Return the vector tile with one layer of rows, each with its `shape` [EPSG:4326] and these fields. Raises NoSuchTile."""
+    _check_address(zoom, column, row)
+    tolerance_deg = Value(_tolerance_deg(zoom), output_field=FloatField())
+    simple = Func(F("shape"), tolerance_deg, Value(True), function="ST_Simplify", output_field=GeometryField())
+    drawn = Func(
+        Func(simple, Value(3857), function="ST_Transform", output_field=GeometryField()),
+        Func(Value(zoom), Value(column), Value(row), function="ST_TileEnvelope", output_field=GeometryField()),
+        Value(EXTENT), Value(BUFFER), Value(True),
+        function="ST_AsMVTGeom", output_field=BinaryField(),
+    )  # fmt: skip
+    sql, parameters = rows.annotate(geom=drawn).order_by().values(*fields, "geom")[:MAX_FEATURES].query.sql_with_params()
+    with connection.cursor() as cursor:
+        cursor.execute(
+            f"SELECT ST_AsMVT(feature, %s, {EXTENT}, 'geom') FROM ({sql}) feature WHERE geom IS NOT NULL",  # noqa: S608 - made by Django
+            [layer, *parameters],
+        )
+        return bytes(cursor.fetchone()[0])
+
+
+def box_of_tile(zoom: int, column: int, row: int) -> Polygon:
+    """Return the tile with its buffer, EPSG:4326. Raises NoSuchTile."""
+    _check_address(zoom, column, row)
+    box = Polygon.from_bbox(_box_deg(zoom, column, row))
+    box.srid = 4326
+    return box
+
+
+def _tolerance_deg(zoom: int) -> float:
+    return 360 / 2**zoom / EXTENT * 4  # half a pixel of a 512 pixel tile
+
+
+def vector_tile(zoom: int, column: int, row: int) -> bytes:
+    """Return the Mapbox vector tile; empty where there is nothing. Raises NoSuchTile."""
+    _check_address(zoom, column, row)
     layers = [layer for layer in LAYERS if zoom >= layer.from_zoom]
     west, south, east, north = _box_deg(zoom, column, row)
     inner = _box_deg(zoom, column, row, buffer=0)
@@ -164,7 +204,7 @@ def vector_tile(zoom: int, column: int, row: int) -> bytes:
                 "cell_deg": 360 / 2**zoom / COUNT_CELLS, "small_deg": SMALL_REGION_PX * 360 / TILE_PX / 2**zoom,
                 "inner_west": inner[0], "inner_south": inner[1], "inner_east": inner[2], "inner_north": inner[3],
                 "zoom": zoom, "column": column, "row": row, "west": west, "south": south, "east": east, "north": north,
-                "tolerance_deg": 360 / 2**zoom / EXTENT * 4,  # half a pixel of a 512 pixel tile
+                "tolerance_deg": _tolerance_deg(zoom),
                 "most": next((most for last_zoom, most in MAX_FEATURES_FAR if zoom <= last_zoom), MAX_FEATURES),
                 "least_voltage_v": least_voltage_v, "out_of_use_zoom": OUT_OF_USE_ZOOM, **sql_words(),
             },

@@ -1,7 +1,6 @@
 """Assets as GeoJSON features."""
 
 import json
-from datetime import datetime
 from typing import Any
 
 from rest_framework import serializers
@@ -9,6 +8,7 @@ from rest_framework import serializers
 from inspection.models import AssetKind, AssetReference
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.assets import DrawnAsset
+from inspection.selectors.register.assets import LastInspection
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
 from workspace.api.external_data import AttributesField
 from workspace.jobs.serializers import Declared
@@ -31,7 +31,12 @@ class AssetPropertiesSerializer(serializers.Serializer):
     line = serializers.IntegerField(allow_null=True, help_text="of a support: the line of the highest voltage that it carries")
     line_label: Declared = serializers.CharField(help_text="of this line; may be empty")
     region = serializers.IntegerField(allow_null=True, help_text="the region of its import")
-    inspected_at = serializers.DateTimeField(allow_null=True, help_text="when an aircraft of your organisation inspected it last")
+    inspected_at = serializers.DateTimeField(
+        allow_null=True, help_text="when an aircraft of your organisation inspected it, or any part of a line, last"
+    )
+    inspected_share = serializers.FloatField(
+        allow_null=True, help_text="of a line or railway: the share of its length that was ever inspected, 0 to 1; null: never, or no line"
+    )
     updated_at = serializers.DateTimeField()
     centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")
     external_id = serializers.CharField(help_text="your organisation's id of it; may be empty")
@@ -64,8 +69,8 @@ FIELDS_OF_AN_ASSET = (
 )  # fmt: skip
 
 
-def asset_properties(asset: DrawnAsset, reference: AssetReference | None, inspected_at: datetime | None) -> dict[str, Any]:
-    """Return the properties of the feature. `reference` and `inspected_at` are of the reader's organisation."""
+def asset_properties(asset: DrawnAsset, reference: AssetReference | None, inspection: LastInspection | None) -> dict[str, Any]:
+    """Return the properties of the feature. `reference` and `inspection` are of the reader's organisation."""
     return {
         "kind": asset.kind,
         "subtype": asset.subtype,
@@ -83,7 +88,8 @@ def asset_properties(asset: DrawnAsset, reference: AssetReference | None, inspec
         "line": asset.line_id,
         "line_label": asset_label(asset.line) if asset.line is not None else "",
         "region": asset.data_import and asset.data_import.region_id,
-        "inspected_at": inspected_at,
+        "inspected_at": inspection and inspection.at,
+        "inspected_share": inspection and inspection.share,
         "updated_at": asset.updated_at,
         "centre": [asset.centre.x, asset.centre.y],
         "external_id": reference.external_id if reference else "",
@@ -91,14 +97,14 @@ def asset_properties(asset: DrawnAsset, reference: AssetReference | None, inspec
     }
 
 
-def asset_feature(asset: DrawnAsset, reference: AssetReference | None, inspected_at: datetime | None) -> dict[str, Any]:
+def asset_feature(asset: DrawnAsset, reference: AssetReference | None, inspection: LastInspection | None) -> dict[str, Any]:
     """Return the feature. `asset` has `geometry_json` from inspection.selectors."""
-    properties = asset_properties(asset, reference, inspected_at)
+    properties = asset_properties(asset, reference, inspection)
     return {"type": "Feature", "id": asset.pk, "geometry": json.loads(asset.geometry_json), "properties": properties}
 
 
-def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None, inspected_at: datetime | None) -> dict[str, Any]:
-    feature = asset_feature(asset, reference, inspected_at)
+def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None, inspection: LastInspection | None) -> dict[str, Any]:
+    feature = asset_feature(asset, reference, inspection)
     feature["properties"] |= {
         "tags": asset.tags,
         "revision": asset.revision,

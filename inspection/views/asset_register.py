@@ -42,7 +42,7 @@ LAYERS = {AssetKind.TOWER: "towers", AssetKind.LINE: "lines", AssetKind.RAILWAY:
 COLUMNS: Columns = {
     "kind": "TEXT", "subtype": "TEXT", "label": "TEXT", "name": "TEXT", "ref": "TEXT", "operator": "TEXT", "voltages_v": "TEXT",
     "circuits": "INTEGER", "height_m": "REAL", "length_m": "REAL", "is_flyable": "BOOLEAN", "line_label": "TEXT", "osm": "TEXT",
-    "external_id": "TEXT", "inspected_at": "DATETIME",
+    "external_id": "TEXT", "inspected_at": "DATETIME", "inspected_share": "REAL",
 }  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Missions: create, list, open, change, plan, delete, restore; also those of an asset."""
+"""Missions: create, list, open, change, plan, delete, restore."""
 
 from dataclasses import replace
 from typing import Any
@@ -9,12 +9,10 @@ from django.http import Http404
 from django.urls import reverse
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.models import Asset
 from inspection.selectors import ground_revision
 from missions import services
 from missions.hooks.rehearsals import failed_rehearsals
@@ -30,7 +28,6 @@ from missions.selectors.mission_list import (
     order_of,
     surroundings,
 )
-from missions.selectors.missions import MissionOfAsset, missions_of_asset
 from missions.selectors.stale_plans import bases_landed_at
 from missions.selectors.uav_changes import missions_with_other_uavs
 from missions.serializers import inputs, shapes
@@ -332,39 +329,3 @@ class MissionHistory(APIView):
     def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         page = page_of(request, missions.history_of_mission(mission_or_404(request.user, mission_id)), order=("-recorded_at", "-pk"))
         return Response({"results": HistoryEntrySerializer(page.rows, many=True).data, "next": page.next})
-
-
-class AssetMissionSerializer(serializers.Serializer):
-    id = serializers.UUIDField()
-    name = serializers.CharField()
-    state = serializers.ChoiceField(choices=MissionState.choices)
-    is_simulated = serializers.BooleanField(help_text="simulated UAVs fly it: it inspects nothing")
-    departs_at = serializers.DateTimeField(allow_null=True)
-    created_at = serializers.DateTimeField()
-    target_count = serializers.IntegerField(help_text="targets at the asset and, of a line, at its supports")
-    inspected_count = serializers.IntegerField(help_text="of these, the completed ones")
-
-
-class AssetMissionPageSerializer(serializers.Serializer):
-    results = AssetMissionSerializer(many=True)
-    next = serializers.CharField(allow_null=True, help_text="address of the next page")
-
-
-class AssetMissions(APIView):
-    @extend_schema(
-        operation_id="list_asset_missions",
-        summary="The missions that inspect an asset or, of a line, its supports, newest first",
-        parameters=PAGE_PARAMETERS,
-        responses=AssetMissionPageSerializer,
-    )
-    def get(self, request: SignedInRequest, asset_id: int) -> Response:
-        asset = Asset.objects.filter(pk=asset_id).first()
-        if asset is None:
-            raise Http404
-        page = page_of(request, missions_of_asset(request.user.organisation_id, asset), order=("-created_at", "-pk"), default_limit=20)
-        return Response({"results": [_mission_json(row) for row in page.rows], "next": page.next})
-
-
-def _mission_json(row: MissionOfAsset) -> dict[str, Any]:
-    names = ("name", "state", "is_simulated", "departs_at", "created_at", "target_count", "inspected_count")
-    return {"id": str(row.pk)} | {name: getattr(row, name) for name in names}

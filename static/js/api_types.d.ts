@@ -483,9 +483,14 @@ export interface components {
             region: number | null;
             /**
              * Format: date-time
-             * @description when an aircraft of your organisation inspected it last
+             * @description when an aircraft of your organisation inspected it, or any part of a line, last
              */
             inspected_at: string | null;
+            /**
+             * Format: double
+             * @description of a line or railway: the share of its length that was ever inspected, 0 to 1; null: never, or no line
+             */
+            inspected_share: number | null;
             /** Format: date-time */
             updated_at: string;
             /** @description lon, lat */
@@ -606,9 +611,14 @@ export interface components {
             region: number | null;
             /**
              * Format: date-time
-             * @description when an aircraft of your organisation inspected it last
+             * @description when an aircraft of your organisation inspected it, or any part of a line, last
              */
             inspected_at: string | null;
+            /**
+             * Format: double
+             * @description of a line or railway: the share of its length that was ever inspected, 0 to 1; null: never, or no line
+             */
+            inspected_share: number | null;
             /** Format: date-time */
             updated_at: string;
             /** @description lon, lat */
@@ -2769,6 +2779,37 @@ export interface components {
          * @enum {string}
          */
         IncidentKindEnum: "crashed" | "down" | "failsafe-return" | "failsafe-land" | "told-return" | "told-land" | "aborted" | "battery" | "link-lost" | "alert";
+        /** @description A part that one mission inspected last, or that was never inspected: then both are null. */
+        InspectedPart: {
+            /**
+             * Format: double
+             * @description along the line, from its first vertex
+             */
+            from_m: number;
+            /** Format: double */
+            to_m: number;
+            /** @description where it begins and ends */
+            stretch: number[][];
+            /** Format: date-time */
+            inspected_at: string | null;
+            mission: components["schemas"]["InspectingMission"] | null;
+        };
+        InspectedParts: {
+            /** Format: double */
+            length_m: number;
+            /**
+             * Format: double
+             * @description the sum of the parts that were ever inspected
+             */
+            inspected_m: number;
+            /** @description from the line's first vertex to its last */
+            parts: components["schemas"]["InspectedPart"][];
+        };
+        InspectingMission: {
+            /** Format: uuid */
+            id: string;
+            name: string;
+        };
         InspectionFinding: {
             /** Format: uuid */
             id: string;
@@ -9615,6 +9656,9 @@ export type ImportInputRequest = components['schemas']['ImportInputRequest'];
 export type ImportKind = components['schemas']['ImportKind'];
 export type Incident = components['schemas']['Incident'];
 export type IncidentKindEnum = components['schemas']['IncidentKindEnum'];
+export type InspectedPart = components['schemas']['InspectedPart'];
+export type InspectedParts = components['schemas']['InspectedParts'];
+export type InspectingMission = components['schemas']['InspectingMission'];
 export type InspectionFinding = components['schemas']['InspectionFinding'];
 export type InspectionFindingDetail = components['schemas']['InspectionFindingDetail'];
 export type InspectionFindingPage = components['schemas']['InspectionFindingPage'];

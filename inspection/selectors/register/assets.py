@@ -28,7 +28,7 @@ from django.db.models import (
 )
 from django.db.models.functions import Coalesce, NullIf, Upper
 
-from inspection.hooks import inspections_of
+from inspection.hooks import inspected_shares_of, inspections_of
 from inspection.models import Asset, AssetKind
 from inspection.models.assets import LAST_NAME
 from inspection.selectors.assets import Box, DrawnAsset, assets_on_the_ground, with_external_id
@@ -36,6 +36,7 @@ from inspection.selectors.ground import DatasetVersion, ground_dataset_version
 from inspection.selectors.picking import supports_of_line
 
 NEVER = datetime(1, 1, 2, tzinfo=UTC)  # sorts before every inspection
+LONG_KINDS = (AssetKind.LINE, AssetKind.RAILWAY)
 MAX_OPERATORS = 200
 OPERATOR = Case(When(operator="", then=Coalesce("line__operator", Value(""))), default=F("operator"))
 
@@ -99,10 +100,20 @@ def _inspected(assets: QuerySet[DrawnAsset], wanted: AssetFilter) -> QuerySet[Dr
     return assets
 
 
-def last_inspections(organisation_id: int, assets: Collection[int]) -> dict[int, datetime]:
-    """Return when those of these assets that were ever inspected were inspected last, by key."""
+@dataclass(frozen=True)
+class LastInspection:
+    """When an asset was inspected last: of a line or railway any part of it. `share` is of its length, ever inspected; None of others."""
+
+    at: datetime
+    share: float | None = None
+
+
+def last_inspections(organisation_id: int, assets: Collection[int]) -> dict[int, LastInspection]:
+    """Return the last inspection of those of these assets that were ever inspected, by key."""
     rows = inspections_of(organisation_id).filter(asset__in=assets).order_by()
-    return dict(rows.values_list("asset").annotate(last=Max("inspected_at")))
+    found = rows.values_list("asset", "asset__kind").annotate(last=Max("inspected_at"))
+    shares = inspected_shares_of(organisation_id, [key for key, kind, _last in found if kind in LONG_KINDS])
+    return {key: LastInspection(last, shares.get(key)) for key, _kind, last in found}
 
 
 def _last_inspection(organisation_id: int) -> Case:

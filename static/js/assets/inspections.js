@@ -8,6 +8,7 @@ import { mountFindings } from "../photos/findings_list.js";
 import { mountPhotos } from "../photos/section.js";
 import { t, tn } from "../text.js";
 import { dateText, lengthText, numberText } from "../units.js";
+import { inspectedPartsOf } from "./inspected_parts.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { AssetCounts, AssetDetailFeature, AssetMission, AssetMissionPage, TargetInputRequest } from "../api_types.d.ts" */
@@ -22,11 +23,12 @@ const ENDED = ["completed", "aborted", "failed"];
  * @param {TargetInputRequest["task"]} [task]
  * @param {string} [key] idempotency key
  */
-export async function planInspection(asset, label, task, key = freshKey()) {
-  const body = {
-    name: t("Inspection of {name}", { name: label }).slice(0, 200),
-    targets: [{ asset, ...(task ? { task } : {}) }],
-  };
+export const planInspection = (asset, label, task, key = freshKey()) =>
+  openMission(label, [{ asset, ...(task ? { task } : {}) }], key);
+
+/** @param {string} label @param {TargetInputRequest[]} targets @param {string} key idempotency key */
+async function openMission(label, targets, key) {
+  const body = { name: t("Inspection of {name}", { name: label }).slice(0, 200), targets };
   try {
     const { data } = /** @type {Answer<{ id: string }>} */ (
       await post("/missions", body, { headers: { "Idempotency-Key": key } })
@@ -52,24 +54,34 @@ export function planButton({ id, properties }) {
 }
 
 /**
- * The missions of an asset, and of a line its towers and spans. They are read once the part is shown.
+ * The missions of an asset, of a line or railway its inspected parts, and of a line its towers and spans. They are read once the part is
+ * shown.
  *
  * @param {AssetDetailFeature} feature
  * @param {(id: number, label: string) => void} showSupports in the register
+ * @param {{ canPlan: boolean }} page
  */
-export function inspectionsPart(feature, showSupports) {
-  const isLine = feature.properties.kind === "line";
+export function inspectionsPart(feature, showSupports, { canPlan }) {
+  const { kind, label, is_flyable: isFlown } = feature.properties;
+  const isLine = kind === "line";
+  const isLong = (isLine || kind === "railway") && feature.geometry.type === "LineString";
+  const parts = h("div", {}, h("div", { class: "skeleton" }));
   const supports = h("div", {}, h("div", { class: "skeleton" }));
   const missions = h("div", {}, h("div", { class: "skeleton" }));
   const part = h(
     "div",
     {},
+    isLong && h("h3", {}, icon("route", "small"), t("Inspected parts")),
+    isLong && parts,
     isLine && h("h3", {}, icon("tower", "small"), t("Towers and spans")),
     isLine && supports,
     h("h3", {}, icon("list-checks", "small"), t("Missions")),
     missions,
   );
   fill(missions, () => missionsOf(feature.id));
+  /** @param {TargetInputRequest[]} targets @param {string} key */
+  const planRest = (targets, key) => openMission(label, targets, key);
+  if (isLong) fill(parts, () => inspectedPartsOf(feature, { planRest: canPlan && isFlown ? planRest : null }));
   if (isLine) fill(supports, () => supportsOf(feature, showSupports));
   return part;
 }

@@ -5,7 +5,7 @@ import { mountRecordPage } from "../ground/record_page.js";
 import { countsText } from "../map/look/region_words.js";
 import { readPage } from "../page/chrome.js";
 import { t, tn } from "../text.js";
-import { coordinateText, dateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
+import { coordinateText, dateText, exactHeightText, lengthText, percentText, voltageText, whenText } from "../units.js";
 import { closeViewPlan, viewPlanPart } from "../view_plan/panel.js";
 import { editMarked } from "./bulk_edit.js";
 import { mountFilters } from "./filters.js";
@@ -35,6 +35,7 @@ const NEW_NAMES = {
 const NAMES = { tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge") };
 /** @type {Record<string, ShapeKind>} */
 const SHAPES = { tower: "point", line: "line", railway: "line", bridge: "area" };
+const ALMOST_ALL = 0.999;
 let kind = ""; // that the list is narrowed to
 /** @type {(keyof AssetDetailProperties)[]} */
 const FACTS = ["subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable"];
@@ -43,6 +44,13 @@ const factsOf = ({ properties, geometry }) => ({
   ...Object.fromEntries(FACTS.map((name) => [name, properties[name]])),
   geometry,
 });
+
+/** When it was inspected last, and how much of a line. @param {AssetFeature["properties"]} properties */
+function inspectedText({ inspected_at: at, inspected_share: share }) {
+  if (!at) return t("never");
+  if (share === null || share >= ALMOST_ALL) return dateText(at);
+  return t("{date}, {share} of its length", { date: dateText(at), share: percentText(Math.floor(share * 100)) });
+}
 
 /** @param {AssetDetailFeature} feature */
 function sourceWords({ properties }) {
@@ -92,7 +100,7 @@ function details(feature) {
         properties.height_m && t("{height} above ground", { height: exactHeightText(properties.height_m) }),
       ),
       term(t("Length"), properties.length_m && lengthText(properties.length_m)),
-      term(t("Last inspection"), properties.inspected_at && whenText(properties.inspected_at)),
+      term(t("Last inspection"), properties.inspected_at && inspectedText(properties)),
       term(t("Network"), properties.is_flyable ? "" : t("Not used for routing")),
       term(t("Place"), coordinateText(properties.centre)),
       term(t("Source"), sourceWords(feature)),
@@ -163,7 +171,7 @@ const REGISTER = {
       name: "inspected",
       words: t("Last inspection"),
       sort: "inspected",
-      cell: ({ properties }) => (properties.inspected_at ? dateText(properties.inspected_at) : t("never")),
+      cell: ({ properties }) => inspectedText(properties),
     },
     { name: "detail", words: t("Details"), isOptional: true, cell: ({ properties }) => properties.detail },
     {
@@ -236,7 +244,7 @@ const ASSETS = {
   form: assetForm,
   act: (feature) => (page.canPlan && feature.properties.is_flyable ? planButton(feature) : null),
   more: (feature) =>
-    h("div", {}, photosPart(feature), resultsPart(feature, page), inspectionsPart(feature, showSupports)),
+    h("div", {}, photosPart(feature), resultsPart(feature, page), inspectionsPart(feature, showSupports, page)),
   closed: closeViewPlan,
   row: ({ properties }) => ({
     icon: properties.kind,

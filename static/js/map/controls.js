@@ -11,6 +11,7 @@ import { t } from "../text.js";
 import { coordinateText } from "../units.js";
 import { mountCoordinates, mountScale, setAttribution } from "./furniture.js";
 import { storeLastView } from "./last_view.js";
+import { createInspectionsLayer } from "./layers/inspections.js";
 import { layersMenu } from "./look/layers_menu.js";
 import { mountLegend } from "./look/legend.js";
 import { createShown } from "./look/shown.js";
@@ -63,6 +64,7 @@ export function mountControls(view, page, act) {
   onTheme(() =>
     requestAnimationFrame(() => {
       view.recolour();
+      inspections.recolour();
       act.recoloured?.(view.palette());
     }),
   );
@@ -82,7 +84,8 @@ export function mountControls(view, page, act) {
   storeLastView(map);
   mountRegionSwitcher(map, page, (box) => view.fit(box));
   const under = chooseUnder(view, page, () => attribute());
-  mountLayersButton(map, under, act);
+  const inspections = createInspectionsLayer(map, view.ready);
+  mountLayersButton(map, under, () => [...(copiedAt === null ? [inspections] : []), ...(act.layers?.() ?? [])]);
   const measure = createMeasure(map, frame, byId("measure"), { onSwitch: act.measures, isBusy: act.isBusy });
   mountPlaceMenu(map, frame, measure, act);
   if (copiedAt === null) watchTiles(map, frame); // a copy has the tiles round its mission, and no others
@@ -190,8 +193,8 @@ function watchUnder(map, onUnreachable) {
   });
 }
 
-/** @param {MapLibreMap} map @param {ReturnType<typeof chooseUnder>} under @param {ControlActs} act */
-function mountLayersButton(map, under, act) {
+/** @param {MapLibreMap} map @param {ReturnType<typeof chooseUnder>} under @param {() => SwitchedLayer[]} more */
+function mountLayersButton(map, under, more) {
   const button = byId("open-layers");
   const shown = createShown(map, () => {
     const words = shown.isWhole() ? t("Layers") : t("Layers: some are hidden");
@@ -199,7 +202,7 @@ function mountLayersButton(map, under, act) {
     button.setAttribute("aria-label", words);
     button.title = words;
   });
-  button.addEventListener("click", () => toggleMenu(button, () => layersMenu({ under, shown, more: act.layers?.() })));
+  button.addEventListener("click", () => toggleMenu(button, () => layersMenu({ under, shown, more: more() })));
 }
 
 /** @param {readonly number[]} place */

@@ -9,7 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.geodesy.stretches import MAX_PARTS, nearest_on_line, parts_of_line, stretch_between
+from inspection.geodesy.stretches import (
+    MAX_PARTS,
+    nearest_on_line,
+    newest_along,
+    parts_of_line,
+    place_along,
+    stretch_between,
+    vertex_lengths_m,
+)
 
 LINE = np.array([[10.0, 56.0], [10.01, 56.0], [10.01, 56.01], [10.03, 56.01]])
 
@@ -104,3 +112,28 @@ def test_each_part_is_found_again_by_its_ends_and_together_they_are_the_line(ste
     # Both are one line; a vertex that repeats the one before is left out of courses.
     distinct = [place for number, place in enumerate(map(tuple, line.tolist())) if number == 0 or place != tuple(line[number - 1])]
     assert np.allclose(joined, distinct, atol=1e-6)
+
+
+def test_the_newest_part_is_on_top_and_what_none_covers_stays() -> None:
+    assert newest_along([], 100.0) == [(0.0, 100.0, None)]
+    assert newest_along([(10.0, 60.0), (80.0, 40.0)], 100.0) == [(0.0, 10.0, None), (10.0, 40.0, 0), (40.0, 80.0, 1), (80.0, 100.0, None)]
+    assert newest_along([(0.0, 100.0), (40.0, 60.0), (-5.0, 200.0)], 100.0) == [(0.0, 100.0, 2)]
+    assert newest_along([(0.0, 50.0), (50.05, 100.0)], 100.0) == [(0.0, 50.05, 0), (50.05, 100.0, 1)]
+
+
+@given(parts=st.lists(st.tuples(st.integers(0, 60), st.integers(0, 60)), max_size=12))
+def test_each_place_has_its_newest_part(parts: list[tuple[int, int]]) -> None:
+    pieces = newest_along(parts, 60.0)
+    assert pieces[0][0] == 0.0 and pieces[-1][1] == 60.0
+    assert all(one[1] == other[0] and one[2] != other[2] for one, other in pairwise(pieces))
+    for middle_m in np.arange(0.5, 60.0):
+        [found] = [number for from_m, to_m, number in pieces if from_m < middle_m < to_m]
+        assert found == max((number for number, ends in enumerate(parts) if min(ends) < middle_m < max(ends)), default=None)
+
+
+def test_a_place_along_a_line_is_found_again() -> None:
+    vertex_m = vertex_lengths_m(LINE)
+    assert place_along(LINE, vertex_m, 0.0) == (10.0, 56.0)
+    assert place_along(LINE, vertex_m, float(vertex_m[-1])) == (10.03, 56.01)
+    halfway = place_along(LINE, vertex_m, float(vertex_m[1] / 2.0))
+    assert halfway == pytest.approx((10.005, 56.0))

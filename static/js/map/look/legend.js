@@ -1,6 +1,7 @@
 /** The legend of the map's symbols. On the map it lists those in view, in the layers menu all of them. */
 
 import { byId, h, svg } from "../../dom.js";
+import { AGES, ageOf, tintOf } from "../../domain/inspection_age.js";
 import { t } from "../../text.js";
 import { bandName } from "./shown.js";
 import { voltageBand } from "./voltages.js";
@@ -17,6 +18,9 @@ const stroke = (token, width, rest = {}) =>
 
 /** @param {string} token @param {number} width @param {Record<string, string>} [rest] */
 const line = (token, width, rest) => () => sample(stroke(token, width, rest));
+
+/** @param {number} accent of AGES */
+const band = (accent) => sample(svg("path", { d: "M1 6H25", stroke: tintOf(accent), "stroke-width": 8 }));
 
 /** @typedef {{ layer: string, words: string, draw: () => SVGElement, band?: string, kind?: string }} Row */
 
@@ -105,6 +109,7 @@ const ROWS = [
         svg("circle", { cx: 13, cy: 6, r: 3, fill: "var(--ground)", stroke: "var(--tower)", "stroke-width": 1.4 }),
       ),
   },
+  ...AGES.map(({ key, words, accent }) => ({ layer: "inspections", kind: key, words, draw: () => band(accent) })),
   {
     layer: "routes",
     words: t("Route, flown to the arrow"),
@@ -170,6 +175,9 @@ const ROWS = [
   },
 ];
 
+/** Layers that the rows of another one explain. @type {Record<string, string>} */
+const SAME_ROWS = { "inspections-points": "inspections" };
+
 /** UAVs are HTML on the map, not a layer. */
 const UAV_ROW = {
   words: t("UAV"),
@@ -209,6 +217,7 @@ const keyOf = (layer, kind = "") => `${layer}/${kind}`;
 function kindOf({ layer, properties, state }) {
   if (layer.id === "lines") return voltageBand(properties.voltage);
   if (layer.id === "route-stops") return properties.kind;
+  if (layer.id.startsWith("inspections")) return ageOf(properties.inspected_s);
   if (layer.id !== "zones-fill" || properties.schedule === undefined) return "";
   return state.resting ? "resting" : "timed";
 }
@@ -218,9 +227,12 @@ export function mountLegend(map) {
   const legend = byId("legend");
   let shown = "";
   map.on("idle", () => {
-    const layers = [...new Set(ROWS.map((row) => row.layer))].filter((id) => map.getLayer(id));
+    const layers = [...new Set([...ROWS.map((row) => row.layer), ...Object.keys(SAME_ROWS)])].filter((id) =>
+      map.getLayer(id),
+    );
     const seen = new Set();
-    for (const feature of map.queryRenderedFeatures({ layers })) seen.add(keyOf(feature.layer.id, kindOf(feature)));
+    for (const feature of map.queryRenderedFeatures({ layers }))
+      seen.add(keyOf(SAME_ROWS[feature.layer.id] ?? feature.layer.id, kindOf(feature)));
     const rows = ROWS.filter((row) => seen.has(keyOf(row.layer, row.kind ?? (row.layer === "lines" ? row.band : ""))));
     if ([...map.getContainer().querySelectorAll(".map-dart")].some((dart) => isWithin(dart, map.getContainer())))
       rows.push({ layer: "", ...UAV_ROW });
