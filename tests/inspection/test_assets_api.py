@@ -56,6 +56,7 @@ def test_an_asset_is_a_geojson_feature(client: Client) -> None:
                 "line_label": "",
                 "region": None,
                 "inspected_at": None,
+                "inspected_share": None,
                 "updated_at": collection["features"][0]["properties"]["updated_at"],
                 "centre": [10.0, 56.0],
                 "external_id": "",

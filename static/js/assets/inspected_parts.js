@@ -9,7 +9,7 @@ import { dateText, lengthText, numberText, percentText } from "../units.js";
 /** @import { Answer } from "../api.js" */
 /** @import { AssetDetailFeature, InspectedPart, InspectedParts, LinePartsOutput, TargetInputRequest } from "../api_types.d.ts" */
 
-const MOST_LISTED = 12;
+const MAX_LISTED = 12;
 
 /** @param {InspectedPart} part */
 const kmText = ({ from_m: from, to_m: to }) =>
@@ -20,6 +20,25 @@ const colourOf = ({ inspected_at: at }) => {
   const key = ageOf(Date.parse(at) / 1000);
   return tintOf(AGES.find((age) => age.key === key)?.accent ?? 0);
 };
+
+/**
+ * Parts beside each other that one mission has inspected, as one part with its newest time.
+ *
+ * @param {InspectedPart[]} parts
+ */
+export function partsByMission(parts) {
+  /** @type {InspectedPart[]} */
+  const joined = [];
+  for (const part of parts) {
+    const last = joined[joined.length - 1];
+    if (!last || last.to_m !== part.from_m || last.mission?.id !== part.mission?.id) joined.push({ ...part });
+    else {
+      last.to_m = part.to_m;
+      last.inspected_at = [last.inspected_at, part.inspected_at].sort()[1];
+    }
+  }
+  return joined;
+}
 
 /**
  * The strip, the share, the parts with their missions.
@@ -34,6 +53,7 @@ export async function inspectedPartsOf({ id }, { planRest }) {
   const done = parts.filter((part) => part.inspected_at);
   const never = parts.filter((part) => !part.inspected_at);
   if (!done.length) return [h("p", { class: "caption" }, t("No part of it was inspected yet."))];
+  const rows = partsByMission(done);
   const newest = done.map((part) => part.inspected_at ?? "").sort();
   const words = t("{done} of {all}, {share}", {
     done: lengthText(inspected),
@@ -49,9 +69,9 @@ export async function inspectedPartsOf({ id }, { planRest }) {
       term(t("Oldest inspection"), dateText(newest[0])),
       term(t("Last inspection"), dateText(newest[newest.length - 1])),
     ),
-    h("ol", { class: "asset-missions" }, done.slice(0, MOST_LISTED).map(partRow)),
-    done.length > MOST_LISTED &&
-      h("p", { class: "caption" }, tn(done.length - MOST_LISTED, "{count} more part", "{count} more parts")),
+    h("ol", { class: "asset-missions" }, rows.slice(0, MAX_LISTED).map(partRow)),
+    rows.length > MAX_LISTED &&
+      h("p", { class: "caption" }, tn(rows.length - MAX_LISTED, "{count} more part", "{count} more parts")),
     planRest && never.length > 0 && restButton(id, never, planRest),
   ].filter((part) => part instanceof Node);
 }

@@ -71,7 +71,7 @@ export function inspectionsPart(feature, showSupports, { canPlan }) {
   const part = h(
     "div",
     {},
-    isLong && h("h3", {}, icon("route", "small"), t("Inspected parts")),
+    isLong && h("h3", {}, icon("line", "small"), t("Inspected parts")),
     isLong && parts,
     isLine && h("h3", {}, icon("tower", "small"), t("Towers and spans")),
     isLine && supports,
