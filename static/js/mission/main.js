@@ -72,6 +72,7 @@ const BEGINNING = {
   savedBasis: null,
   restoredBasis: null,
   figures: {},
+  uavNumbers: null,
   planning: null,
   saving: false,
   problem: null,

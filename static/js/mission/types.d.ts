@@ -392,6 +392,28 @@ export interface Caught {
 export type Tool = "point" | "box" | "lasso" | "line" | "stretch" | "place" | "rally" | "zone";
 
 /** What the page knows: the state of its store. */
+/** A plan that is done soonest by a number of UAVs, in short. */
+export interface UavNumber {
+  uavs: PickedUav[];
+  done_s: number;
+  length_m: number;
+  flights: number;
+  missed: number;
+}
+
+/** Plans by the number of UAVs. */
+export interface UavNumbers {
+  /** of the selection without its UAVs */
+  key: string;
+  /** how many could fly */
+  candidates: number;
+  /** fewest UAVs first */
+  rows: UavNumber[];
+  /** the number that is being planned, null at the end */
+  planning: number | null;
+  fault: string;
+}
+
 export interface MissionPageState {
   ground: Ground | null;
   fleet: FleetUav[];
@@ -427,6 +449,7 @@ export interface MissionPageState {
   planningBeside: string | null;
   /** by basis: why that could not be planned */
   refusedBeside: Record<string, string>;
+  uavNumbers: UavNumbers | null;
   why: Why | null;
   /** where the pointer is on a strip or a profile */
   along: { sequence: number; at_m: number; isWished: boolean } | null;

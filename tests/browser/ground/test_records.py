@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.conftest import Visitor
+from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks, find_pickable, look_at, place_of
 from tests.browser.regions import region
 
@@ -329,3 +329,46 @@ def test_operators_look_and_change_nothing(visitor: Visitor, picture: Picture) -
     page.set_viewport_size({"width": 1440, "height": 900})
     page.get_by_label("Sets and sources").check(force=True)
     expect(page.locator(".set").first).to_contain_text("zones")
+
+
+INSPECT_HALF = """
+from django.contrib.gis.geos import LineString
+from django.utils import timezone
+from inspection.models import Asset
+from inspection.selectors.picking import parts_of_asset
+from missions.models import InspectionTarget, Mission, MissionUav, TargetState, Uav
+from workspace.models import User
+
+opal = User.objects.get(username="opal")
+line = Asset.objects.get(pk={line})
+mission = Mission.objects.create(organisation=opal.organisation, author=opal, name="Spring round")
+uav = Uav.objects.create(organisation=opal.organisation, name="Inspector {line}", location=line.centre)
+MissionUav.objects.create(mission=mission, sequence=0, uav=uav, name=uav.name, start=line.centre, cruise_speed_mps=10.0)
+parts = parts_of_asset(line, 1_000.0)
+for sequence, part in enumerate(parts[: len(parts) // 2]):
+    stretch = LineString(part.start, part.end, srid=4326)
+    InspectionTarget.objects.create(
+        mission=mission, sequence=sequence, asset=line, label="", stretch=stretch, state=TargetState.COMPLETE, state_at=timezone.now()
+    )
+"""
+
+
+def test_which_parts_of_a_line_were_inspected_is_seen_and_the_rest_planned(visitor: Visitor, site: Site) -> None:
+    page = visitor.signs_in("opal")
+    lines = asks(page, "/assets?kind=line&flyable=true&sort=-length&limit=1")["features"]
+    site.does(INSPECT_HALF.format(line=lines[0]["id"]))
+    parts = asks(page, f"/assets/{lines[0]['id']}/parts")["parts"]
+    page.goto(f"/assets?id={lines[0]['id']}")
+    expect(page.get_by_role("img", name=re.compile(r"^Inspected: [\d.]+ km of [\d.]+ km, \d\d %$"))).to_be_visible()
+    part = page.locator(".asset-missions li").filter(has_text=re.compile(r"km 0\.0–[\d.]+"))
+    expect(part.get_by_role("link", name="Spring round")).to_be_visible()
+
+    page.get_by_role("button", name="Layers").click()
+    with page.expect_response(lambda answer: "/tiles/inspections/" in answer.url and answer.ok):
+        page.get_by_role("checkbox", name="Last inspections").check()
+    page.keyboard.press("Escape")
+    expect(page.locator("#legend")).to_contain_text("Inspected in the last 30 days")
+
+    page.get_by_role("button", name=re.compile("^Plan the .* not inspected yet$")).click()
+    page.wait_for_url(re.compile("/missions/"))
+    expect(page.locator("#target-count")).to_have_text(f"{len(parts) - len(parts) // 2}")

@@ -1,5 +1,6 @@
-"""A mission whose UAV has changed since: the open page says it, takes the present figures and gives them back."""
+"""The UAVs of a mission: how many of them, and one that has changed since: its present figures are taken and given back."""
 
+import re
 from typing import Any
 
 import pytest
@@ -71,3 +72,25 @@ def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor
     row = page.get_by_role("row").filter(has_text="Swift's battery")
     expect(row).to_contain_text("UAV changed since")
     changes(page, swift, {"state": "retired"})  # it is not offered to other tests
+
+
+def test_how_many_uavs_is_chosen_by_when_they_are_done(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    for name, place in ("Wren", region.west), ("Swallow", region.east):
+        sends(page, "uavs", {"name": name, "type": unlimited_type(page), "position": place})
+    towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
+    picked = [{"asset": tower["id"]} for tower in towers[:: len(towers) // 4][:4]]
+    opens(page, sends(page, "missions", {"name": "How many", "targets": picked}))
+
+    page.get_by_role("button", name="How many UAVs?").click()
+    rows = page.locator("#uav-numbers tbody tr")
+    expect(rows.first.get_by_role("rowheader")).to_contain_text("1")  # planned last
+    expect(page.locator(".uav-numbers-progress")).to_have_count(0)
+    assert rows.count() > 1
+    done = rows.first.get_by_role("cell").first.inner_text()
+    rows.first.get_by_role("button", name="Use 1 UAV").click()
+    expect(page.locator("#plan-sentence")).to_contain_text(f"All back in {done}")
+    expect(page.locator("#uav-count")).to_have_text(re.compile("^1 of "))
+    expect(rows.nth(1).get_by_role("button", name="Use 2 UAVs")).to_be_visible()
+    page.keyboard.press("Control+z")
+    expect(page.locator("#uav-count")).to_have_text(re.compile("^0 of "))

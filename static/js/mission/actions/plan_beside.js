@@ -54,7 +54,7 @@ function createSideSearch(store) {
       stopping = job = running = null;
       store.update({ planningBeside: null });
     },
-    /** @param {MissionSelection} other @param {AbortController} own */
+    /** The plan, which is kept among the figures; null once it was stopped. @param {MissionSelection} other @param {AbortController} own */
     async make(other, own) {
       const basis = picks.basisOf(other);
       store.update({ planningBeside: basis });
@@ -62,15 +62,42 @@ function createSideSearch(store) {
       const begun = "job" in answer.data && answer.status === 202 ? (answer.data.job ?? null) : null;
       if (own.signal.aborted) {
         cancelJob(begun);
-        return;
+        return null;
       }
       job = begun;
       const made = job ? (await follow(job, { signal: own.signal })).result : answer.data;
       job = null;
       const result = /** @type {PlanResult | null} */ (made && begun ? { ...made, job: begun } : made);
-      if (result && !own.signal.aborted) store.update({ figures: withResult(store.state.figures, basis, result) });
+      if (!result || own.signal.aborted) return null;
+      store.update({ figures: withResult(store.state.figures, basis, result) });
+      return result;
     },
   };
+}
+
+/** @typedef {(planned: MissionSelection, result: PlanResult) => MissionSelection | null} NextOf */
+
+/**
+ * Plan selections one after the other; each follows from the plan before it.
+ *
+ * @param {MissionStore} store
+ * @param {ReturnType<typeof createSideSearch>} search
+ * @param {MissionSelection} first
+ * @param {NextOf} nextOf
+ */
+async function planInTurn(store, search, first, nextOf) {
+  const own = search.begin(first);
+  try {
+    /** @type {MissionSelection | null} */
+    let asked = first;
+    while (asked) {
+      /** @type {PlanResult | null} */
+      const result = store.state.figures[picks.basisOf(asked)] ?? (await search.make(asked, own));
+      asked = result && !own.signal.aborted ? nextOf(asked, result) : null;
+    }
+  } finally {
+    search.end(own);
+  }
 }
 
 /**
@@ -152,6 +179,11 @@ export function createPlanBeside(store) {
         search.end(own);
       }
     },
+    /** @param {MissionSelection} first @param {NextOf} nextOf */
+    wantInTurn(first, nextOf) {
+      stop();
+      return planInTurn(store, search, first, nextOf);
+    },
     /** To a save that the server has to plan for; the large one is made after it. */
     giveWay() {
       const later = search.running();
@@ -162,6 +194,8 @@ export function createPlanBeside(store) {
     /** @param {MissionSelection} selection */
     keepOnlyFor(selection) {
       const { planningBeside } = store.state;
+      const { uavNumbers } = store.state;
+      if (uavNumbers) return; // it is stopped by its own listener
       const bases = OBJECTIVES.map(({ value }) => picks.basisOf({ ...selection, objective: value }));
       if (planningBeside && !bases.includes(planningBeside)) stop();
     },

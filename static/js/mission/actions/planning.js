@@ -12,6 +12,7 @@ import * as picks from "../selection.js";
 import { cancelJob, createPlanBeside, MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
 import { planOf, withResult } from "./plan_results.js";
 import { replanSmallChanges } from "./replanning.js";
+import { createUavNumbers } from "./uav_numbers.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { JobLink } from "../../api_types.d.ts" */
@@ -29,6 +30,7 @@ export function createPlanning(context) {
   showKnownPlans(context, aside);
   rememberLastPlan(context);
   replanSmallChanges(context, plan);
+  const numbers = createUavNumbers(context, aside);
 
   return {
     plan() {
@@ -36,6 +38,7 @@ export function createPlanning(context) {
       return plan();
     },
     resume,
+    ...numbers,
     ...createStopping(context),
     waitForJob,
     makeRoom: aside.giveWay,

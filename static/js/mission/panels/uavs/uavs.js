@@ -6,6 +6,7 @@ import { GROUNDING, isPlanCurrent } from "../../plan/plan_view.js";
 import { canFly, choicesOf, inFleetOrder, isAskedFor, standingUavs } from "../../uavs/fleet.js";
 import { figuresInMission } from "../../uavs/uav_changes.js";
 import { changeDialog, newDialog } from "./dialog.js";
+import { mountUavNumbers } from "./numbers.js";
 import { refreshRow, uavRow } from "./row.js";
 
 /** @import { FleetUav, MissionActions, MissionPageState, MissionStore, StandingUav } from "../../types.d.ts" */
@@ -102,6 +103,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
       actions.addUavsOfFleet(free.flatMap(({ id }) => id ?? []));
     });
     byId("all-uavs").addEventListener("click", filters.clear);
+    mountUavNumbers(store, actions);
   }
   store.listen(["fleet", "selection", "plan", "mission", "arrival"], refresh);
 

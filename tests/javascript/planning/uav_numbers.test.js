@@ -1,0 +1,155 @@
+/** Numbers of UAVs compared: candidates, the next smaller plan, rows, and the plans in turn. */
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { createUavNumbers } from "../../../static/js/mission/actions/uav_numbers.js";
+import { EMPTY, targetOf } from "../../../static/js/mission/selection.js";
+import {
+  canCompareNumbers,
+  keyOfNumbers,
+  MAX_UAVS,
+  numberOf,
+  withCandidates,
+  withFewer,
+} from "../../../static/js/mission/uavs/uav_numbers.js";
+import { createStore } from "../../../static/js/store.js";
+
+const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `T${id}` }, centre: [9, 50] });
+const uav = (id, lon = 9, more = {}) => ({
+  id,
+  name: `Tern ${id}`,
+  position: [lon, 50],
+  max_range_m: 9000,
+  cruise_speed_mps: 12,
+  end_action: "return",
+  state: "active",
+  missing: [],
+  ...more,
+});
+const mission = (uavs, targets = [tower(1), tower(2)]) => ({ ...EMPTY, targets, uavs });
+const route = (duration_s, length_m = 1000, bases = 0) => ({
+  duration_s,
+  departs_s: 0,
+  length_m,
+  waypoints: Array.from({ length: bases }, () => ({ kind: "base", task: { hold_s: 60 } })),
+});
+const planned = (...routes) => ({
+  routes,
+  total_length_m: routes.reduce((sum, { length_m }) => sum + length_m, 0),
+  unassigned: [],
+  ground_revision: 1,
+});
+
+test("candidates are the mission's UAVs, then the nearest of the fleet that can fly", () => {
+  const fleet = [
+    uav(1, 9.3),
+    uav(2, 9.1),
+    uav(3, 9.2),
+    uav(4, 9, { state: "retired" }),
+    uav(5, 9, { missing: ["battery"] }),
+  ];
+  const first = withCandidates(mission([uav(9, 10)]), fleet);
+  assert.deepEqual([first.uavs.map(({ id }) => id), first.objective], [[9, 2, 3, 1], "makespan"]);
+  const many = Array.from({ length: 20 }, (_, number) => uav(number + 1));
+  assert.equal(withCandidates(mission([]), many).uavs.length, MAX_UAVS);
+});
+
+test("they are compared where there are targets, two UAVs and no lock", () => {
+  assert.ok(canCompareNumbers(mission([uav(1)]), [uav(2)]));
+  assert.ok(!canCompareNumbers(mission([uav(1)]), [uav(1)]));
+  assert.ok(!canCompareNumbers(mission([uav(1)], []), [uav(2)]));
+  assert.ok(!canCompareNumbers({ ...mission([uav(1), uav(2)]), locks: [{ uav: "Tern 1", targets: [] }] }, []));
+});
+
+test("a plan that leaves UAVs on the ground is that of fewer", () => {
+  const selection = mission([uav(1), uav(2), uav(3)]);
+  const result = planned(route(600), route(0, 0), route(900));
+  assert.equal(numberOf(selection, result), null);
+  assert.deepEqual(
+    withFewer(selection, result)?.uavs.map(({ id }) => id),
+    [1, 3],
+  );
+});
+
+test("of a plan that uses all the one that is back first stays away, unless a target is tied to it", () => {
+  const selection = mission([uav(1), uav(2)]);
+  const result = planned(route(600, 4000, 1), route(900, 5000));
+  assert.deepEqual(numberOf(selection, result), {
+    uavs: selection.uavs,
+    done_s: 900,
+    length_m: 9000,
+    flights: 3,
+    missed: 0,
+  });
+  assert.deepEqual(
+    withFewer(selection, result)?.uavs.map(({ id }) => id),
+    [2],
+  );
+  const tied = mission([uav(1), uav(2)], [{ ...tower(1), uav: "Tern 1" }]);
+  assert.deepEqual(
+    withFewer(tied, result)?.uavs.map(({ id }) => id),
+    [1],
+  );
+  assert.equal(withFewer(mission([uav(1)]), planned(route(1500))), null);
+});
+
+/** A page whose plans take 1,200 s shared by the UAVs. */
+function page(plans = []) {
+  const store = createStore({
+    selection: mission([uav(1), uav(2), uav(3)]),
+    fleet: [],
+    figures: {},
+    uavNumbers: null,
+    planning: null,
+  });
+  const aside = {
+    stops: 0,
+    stop: () => {
+      aside.stops += 1;
+    },
+    async wantInTurn(first, nextOf) {
+      for (let asked = first; asked; ) {
+        plans.push(asked.uavs.length);
+        const { length } = asked.uavs;
+        asked = nextOf(asked, planned(...asked.uavs.map((_, place) => route(1200 / length + place))));
+        await Promise.resolve();
+      }
+    },
+  };
+  const change = (selection) => store.update({ selection });
+  const context = { store, selection: () => store.state.selection, change, wordsOf: (error) => error.message };
+  return { store, aside, actions: createUavNumbers(context, aside) };
+}
+
+test("each number has a row, fewest first, and a choice takes its UAVs", async () => {
+  const plans = [];
+  const { store, actions } = page(plans);
+  await actions.compareUavNumbers();
+  assert.deepEqual(plans, [3, 2, 1]);
+  const { rows, planning } = store.state.uavNumbers;
+  assert.deepEqual([rows.map(({ uavs }) => uavs.length), planning], [[1, 2, 3], null]);
+  actions.useUavNumber(rows[1]);
+  assert.deepEqual(
+    store.state.selection.uavs.map(({ id }) => id),
+    [2, 3],
+  );
+  assert.ok(store.state.uavNumbers, "other UAVs leave the rows as they are");
+});
+
+test("another selection closes them, and stops what is being planned", async () => {
+  const { store, aside, actions } = page();
+  const comparing = actions.compareUavNumbers();
+  assert.equal(store.state.uavNumbers.planning, 2);
+  store.update({ selection: { ...store.state.selection, targets: [tower(7)] } });
+  assert.deepEqual([store.state.uavNumbers, aside.stops], [null, 1]);
+  await comparing;
+  assert.equal(store.state.uavNumbers, null);
+});
+
+test("a fault is told beside the rows that are there", async () => {
+  const { store, aside, actions } = page();
+  aside.wantInTurn = () => Promise.reject(new Error("The server is busy."));
+  await actions.compareUavNumbers();
+  assert.equal(store.state.uavNumbers.fault, "The server is busy.");
+  assert.equal(keyOfNumbers(store.state.selection), store.state.uavNumbers.key);
+});
