@@ -15,6 +15,8 @@ IntArray = NDArray[np.int64]
 
 MAX_PARTS = 24  # of one line: a mission takes 500 targets
 SAME_LENGTH_M = 0.1
+NEAR, NEAR_STRAIGHT = 0.5, 0.3  # of a part's length: how far from its wanted place it is cut at a support, and where the line is straight
+STRAIGHT_DEG = 3.0
 
 
 @dataclass(frozen=True)
@@ -122,8 +124,9 @@ def parts_of_line(
 ) -> list[LinePart]:
     """Return a line, or its stretch between two places, cut at vertices into at most MAX_PARTS parts of about `part_m` metres.
 
-    at: the vertices where it is cut if they are near, such as those with a support; else it is cut at any. A stretch is stored as its
-    two ends: where these would lead to another part, as on a line that meets itself, the whole is returned as one part.
+    at: the vertices where it is cut if they are near, such as those with a support; else it is cut at any. Vertices where the line goes
+    straight on come first: a UAV slows down where one part ends and the next begins in another direction. A stretch is stored as its two
+    ends: where these would lead to another part, as on a line that meets itself, the whole is returned as one part.
     """
     vertex_m = vertex_lengths_m(line)
     whole = part_between(line, *(ends or (line_end(line, 0), line_end(line, -1))), vertex_m)
@@ -133,16 +136,26 @@ def parts_of_line(
         return [whole]
     wanted_m = whole.from_m + whole.length_m * np.arange(1, count) / count
     nearest = _nearest(vertex_m, inside, wanted_m)
-    preferred = np.intersect1d(inside, np.asarray(at, dtype=np.int64))
-    if len(preferred):
-        found = _nearest(vertex_m, preferred, wanted_m)
-        is_near = np.abs(vertex_m[found] - wanted_m) < 0.5 * whole.length_m / count
-        nearest = np.where(is_near, found, nearest)
+    supports = np.intersect1d(inside, np.asarray(at, dtype=np.int64))
+    straight = _straight_vertices(line)
+    usual = supports if len(supports) else inside
+    for preferred, within in ((supports, NEAR), (np.intersect1d(usual, straight), NEAR_STRAIGHT)):
+        if len(preferred):
+            found = _nearest(vertex_m, preferred, wanted_m)
+            is_near = np.abs(vertex_m[found] - wanted_m) < within * whole.length_m / count
+            nearest = np.where(is_near, found, nearest)
     cuts = np.unique(nearest)
     places = [whole.start, *(LonLat(float(lon), float(lat)) for lon, lat in line[cuts]), whole.end]
     lengths_m = [whole.from_m, *vertex_m[cuts].tolist(), whole.to_m]
     parts = [LinePart(*places_of, *along_m) for places_of, along_m in zip(pairwise(places), pairwise(lengths_m), strict=True)]
     return parts if all(_leads_back(line, vertex_m, part) for part in parts) else [whole]
+
+
+def _straight_vertices(line: FloatArray) -> IntArray:
+    """Return the vertices at which a line goes on in about the same direction, in order."""
+    east = np.diff(line[:, 0]) * np.cos(np.radians(line[:-1, 1]))
+    turn_deg = np.degrees(np.diff(np.arctan2(east, np.diff(line[:, 1]))))
+    return 1 + np.flatnonzero(np.abs((turn_deg + 180.0) % 360.0 - 180.0) <= STRAIGHT_DEG)
 
 
 def _nearest(vertex_m: FloatArray, candidates: IntArray, wanted_m: FloatArray) -> IntArray:

@@ -8,11 +8,12 @@ from django.db import transaction
 from django.db.models import Model
 from django.utils.translation import gettext as _
 
-from missions.models import ENDED_STATES, InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Waypoint
+from missions.models import ENDED_STATES, InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Uav, Waypoint
 from missions.models.missions import MAX_NAME_LENGTH
 from missions.services.commands.refused import refuse
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.missions import create_mission, note, request_of_mission
+from planning.request import PlanRequest
 from workspace.models import User
 
 COPIED = (
@@ -45,7 +46,15 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "", targets: 
     if not missed:
         none = _("No target of this mission was missed.") if targets is None else _("None of these targets is left to this mission.")
         raise refuse("nothing_missed", none)
-    uavs = tuple(replace(uav, position=uav.returns_to, home=None) for uav in asked.uavs)
+    real = _uavs_of_twins(asked)
+    uavs = tuple(
+        replace(uav, position=uav.returns_to, home=None, uav=real[uav.uav].pk, name=real[uav.uav].name)
+        if uav.uav in real
+        else replace(uav, position=uav.returns_to, home=None)
+        for uav in asked.uavs
+    )
+    names = {uav.name: other.name for uav, other in zip(asked.uavs, uavs, strict=True)}
+    missed = tuple(replace(wish, uav=names.get(wish.uav, wish.uav)) for wish in missed)
     return create_mission(
         organisation=mission.organisation,
         author=author,
@@ -54,6 +63,12 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "", targets: 
         external_id=mission.external_id,
         attributes=mission.attributes,
     )
+
+
+def _uavs_of_twins(asked: PlanRequest) -> dict[int | None, Uav]:
+    """Return the real UAV of each simulated twin of a request, by the twin's key: it flies the follow-up of a simulated copy."""
+    twins = Uav.objects.filter(pk__in=[uav.uav for uav in asked.uavs if uav.uav is not None], twin_of__isnull=False)
+    return {twin.pk: twin.twin_of for twin in twins.select_related("twin_of") if twin.twin_of is not None}
 
 
 def _what(target: InspectionTarget) -> tuple[Any, ...]:

@@ -21,14 +21,17 @@ SIMULATION_ENDED = "simulation-ended"  # outcome of commands to twins that are g
 
 
 def end_copy(mission: Mission) -> None:
-    """End a simulated copy that was sent to twins that are gone; other missions stay unchanged."""
+    """End a simulated copy that was sent to twins that are gone, and what continues it; other missions stay unchanged."""
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
-        if held.simulates_id is None or held.state not in ON_ITS_WAY:
+        if held.simulates_id is None:
             return
-        end_commands(UavCommand.objects.filter(mission=held), code=SIMULATION_ENDED, why=(Reason("simulation_ended"),))
-        is_open = held.targets.filter(state__in=UNDECIDED).exists()
-        change_state(held, MissionState.ABORTED if is_open else MissionState.COMPLETED, None, "close", {"why": "The simulation has ended."})
+        if held.state in ON_ITS_WAY:
+            end_commands(UavCommand.objects.filter(mission=held), code=SIMULATION_ENDED, why=(Reason("simulation_ended"),))
+            ended = MissionState.ABORTED if held.targets.filter(state__in=UNDECIDED).exists() else MissionState.COMPLETED
+            change_state(held, ended, None, "close", {"why": "The simulation has ended."})
+        for continuation in held.continued_by.all():
+            end_copy(continuation)
 
 
 def retire_idle_twins(*, organisation: Organisation, actor: User | None, but: Collection[int] = ()) -> None:

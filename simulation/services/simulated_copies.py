@@ -69,7 +69,7 @@ def fly_simulated_copy(
 
 def _copy_in_use(mission: Mission) -> Mission | None:
     """Return the newest copy of the present plan that can still be flown."""
-    copies = mission.simulated_copies.filter(state__in=FLOWN, deleted_at=None, planned_at=mission.planned_at)
+    copies = mission.simulated_copies.filter(state__in=FLOWN, deleted_at=None, planned_at=mission.planned_at, continues=None)
     return copies.order_by("-created_at").first()
 
 

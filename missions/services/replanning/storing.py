@@ -73,7 +73,7 @@ def _store(proposal: Proposal) -> Mission:
         external_id=flying.external_id,
         attributes=flying.attributes,
     )
-    Mission.objects.filter(pk=draft.pk).update(continues=flying, alert_limits=flying.alert_limits)
+    Mission.objects.filter(pk=draft.pk).update(continues=flying, simulates=flying.simulates_id, alert_limits=flying.alert_limits)
     for uav, one in zip(draft.mission_uavs.all(), continued, strict=True):
         MissionUav.objects.filter(pk=uav.pk).update(home_amsl_m=one.leaving.rest.take_off_amsl_m)
     planned = store_plan(mission=draft, actor=None, revision=draft.revision, plan=_plan(proposal, continued, targets))

@@ -75,6 +75,16 @@ def test_it_is_cut_where_the_supports_are() -> None:
     assert ends[1] == pytest.approx(10.028) and ends[4] == pytest.approx(10.084)
 
 
+def test_it_is_cut_where_it_goes_straight_on_rather_than_at_a_bend() -> None:
+    bends = {4, 12, 20}  # spans of 250 m, and a bend where each fourth part would end
+    north = np.cumsum([0.0, *(0.0005 if number % 8 >= 4 else 0.0 for number in range(40))])
+    zigzag = np.column_stack([10.0 + 0.004 * np.arange(41), 56.0 + north])
+    ends = {round((part.end.lon - 10.0) / 0.004) for part in parts_of_line(zigzag, 1_000.0)[:-1]}
+    assert len(ends) == 9 and not ends & bends
+    every = np.column_stack([zigzag[:, 0], 56.0 + 0.0005 * (np.arange(41) % 2)])
+    assert [round((part.end.lon - 10.0) / 0.004) for part in parts_of_line(every, 1_000.0)[:-1]] == list(range(4, 40, 4))
+
+
 def test_a_stretch_is_cut_between_its_ends_alone() -> None:
     ends = nearest_on_line(STRAIGHT, LonLat(10.061, 56.0)), nearest_on_line(STRAIGHT, LonLat(10.021, 56.0))
     parts = parts_of_line(STRAIGHT, 1_000.0, ends=ends)

@@ -13,9 +13,11 @@ from missions.services.commands.flight_progress import FlightEnd, mark_flight_en
 from missions.services.commands.refused import Refused
 from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.steering import mission_in_hand
+from missions.services.mission_copies import draft_follow_up
 from missions.services.replanning import accept_offer, decline_offer, offers, settle_offers, suggest
 from missions.services.replanning.staleness import MIN_LEFT_S, VALID_FOR
 from operation.reasons import Reason
+from simulation.services.idle_twins import end_copy
 from tests.accounts.users import a_user
 from tests.missions.commands.outbox import claim, fence, give
 from tests.missions.flights import carry, ground
@@ -48,6 +50,36 @@ def test_what_a_uav_that_failed_leaves_is_offered_to_the_other(flight):
     assert offer.continuation.state == MissionState.PLANNED
     assert offer.continuation.continues_id == flight.mission.pk
     assert not flight.mission.commands.filter(kind=CommandKind.HOLD).exists()
+
+
+def as_simulated_copy(flight: Flight) -> Mission:
+    """Make the flying mission a copy that simulated twins fly, and return the mission that it is a copy of."""
+    original = Mission.objects.create(organisation=flight.mission.organisation, author=flight.author, name="Real")
+    for uav in flight.uavs:
+        real = Uav.objects.create(organisation=uav.organisation, name=f"Real {uav.name}", uav_type=uav.uav_type, location=uav.location)
+        Uav.objects.filter(pk=uav.pk).update(is_simulated=True, twin_of=real)
+    Mission.objects.filter(pk=flight.mission.pk).update(simulates=original)
+    return original
+
+
+def test_in_a_simulated_copy_the_other_twin_goes_on_in_a_simulated_mission(flight):
+    original = as_simulated_copy(flight)
+    offer = accept_offer(offer=failed_tern(flight), actor=flight.author)
+    continuation = Mission.objects.get(pk=offer.continuation_id)
+    assert (continuation.state, continuation.simulates) == (MissionState.DISPATCHED, original)
+    end_copy(Mission.objects.get(pk=flight.mission.pk))
+    continuation.refresh_from_db()
+    assert continuation.state == MissionState.ABORTED
+    assert not claim(*flight.uavs), "nothing is sent to twins that are gone"
+
+
+def test_what_a_simulated_copy_missed_is_planned_for_the_uavs_themselves(flight):
+    as_simulated_copy(flight)
+    mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[0].pk, flight=1, end=FlightEnd.FAILED)
+    end_copy(Mission.objects.get(pk=flight.mission.pk))
+    draft = draft_follow_up(mission=Mission.objects.get(pk=flight.mission.pk), author=flight.author)
+    assert (draft.simulates, {row.uav.twin_of for row in draft.mission_uavs.all()}) == (None, {None})
+    assert [row.name for row in draft.mission_uavs.all()] == [f"Real {uav.name}" for uav in flight.uavs]
 
 
 def test_a_route_is_not_left_amid_photos_beside_wires(flight):
