@@ -31,7 +31,7 @@ from planning.solver.solver import solve
 TITLE = "Networks of lines from one depot"
 INSPECT_MPS, FLY_MPS = 5.0, 8.0
 FLIGHTS_S = (600.0, 1_200.0)
-SPARE_FLIGHTS = 1.4  # of those that the length of all edges needs at least
+SPARE_FLIGHTS = 2.0  # of those that the length of all edges needs at least
 UAVS_FLIGHT_S = 1_200.0
 
 

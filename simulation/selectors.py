@@ -7,7 +7,7 @@ from uuid import UUID
 from django.db.models import QuerySet
 
 from missions.hooks.events import EventKind, EventPlace, EventSource, MissionEvent
-from missions.models import UavType
+from missions.models import Mission, UavType
 from simulation.models import Rehearsal, RehearsalRule, RehearsalTrack, SimulatedAirframe, SimulatedVehicle, Simulation, SimulationChange
 from simulation.vehicle_models import reason_words
 from workspace.models import JobState, Organisation
@@ -48,7 +48,11 @@ def simulations_of_organisation(organisation: Organisation) -> QuerySet[Simulati
 
 
 def simulations_of_mission(organisation: Organisation, mission_id: UUID) -> QuerySet[Simulation]:
-    return simulations_of_organisation(organisation).filter(mission=mission_id)
+    """Return the simulations that fly a mission: its own or, of one that continues a simulated copy, those of the copy."""
+    missions = [mission_id]
+    while (continued := Mission.objects.filter(pk=missions[-1]).values_list("continues", flat=True).first()) is not None:
+        missions.append(continued)
+    return simulations_of_organisation(organisation).filter(mission__in=missions)
 
 
 def vehicles_of_organisation(organisation: Organisation) -> QuerySet[SimulatedVehicle]:

@@ -102,9 +102,11 @@ def place_along(line: FloatArray, vertex_m: FloatArray, along_m: float) -> LonLa
 def newest_along(parts: Sequence[tuple[float, float]], length_m: float) -> list[tuple[float, float, int | None]]:
     """Return a line in pieces from its first vertex to its last: from [m], to [m], and the number of the last part that covers it.
 
-    parts: from and to along the line, metres, oldest first; None is what no part covers. Pieces under SAME_LENGTH_M join the piece before.
+    parts: from and to along the line, metres, oldest first; None is what no part covers. Pieces under SAME_LENGTH_M join a piece beside.
     """
     ends_m = np.unique(np.clip([0.0, length_m, *(end_m for part in parts for end_m in part)], 0.0, length_m))
+    if len(ends_m) < 2:
+        return [(0.0, length_m, len(parts) - 1 if parts else None)]
     newest = np.full(len(ends_m) - 1, -1)
     for number, part in enumerate(parts):
         first, last = np.searchsorted(ends_m, np.clip(sorted(part), 0.0, length_m))
@@ -114,6 +116,8 @@ def newest_along(parts: Sequence[tuple[float, float]], length_m: float) -> list[
         covered_by = None if number < 0 else number
         if pieces and (covered_by == pieces[-1][2] or to_m - from_m < SAME_LENGTH_M):
             pieces[-1] = (pieces[-1][0], to_m, pieces[-1][2])
+        elif pieces and pieces[-1][1] - pieces[-1][0] < SAME_LENGTH_M:  # the first one
+            pieces[-1] = (pieces[-1][0], to_m, covered_by)
         else:
             pieces.append((from_m, to_m, covered_by))
     return pieces
@@ -148,7 +152,7 @@ def parts_of_line(
     places = [whole.start, *(LonLat(float(lon), float(lat)) for lon, lat in line[cuts]), whole.end]
     lengths_m = [whole.from_m, *vertex_m[cuts].tolist(), whole.to_m]
     parts = [LinePart(*places_of, *along_m) for places_of, along_m in zip(pairwise(places), pairwise(lengths_m), strict=True)]
-    return parts if all(_leads_back(line, vertex_m, part) for part in parts) else [whole]
+    return parts if all(leads_back(line, vertex_m, part) for part in parts) else [whole]
 
 
 def _straight_vertices(line: FloatArray) -> IntArray:
@@ -164,7 +168,7 @@ def _nearest(vertex_m: FloatArray, candidates: IntArray, wanted_m: FloatArray) -
     return found
 
 
-def _leads_back(line: FloatArray, vertex_m: FloatArray, part: LinePart) -> bool:
-    """Whether the ends of the part, looked up on the line, give the part itself."""
+def leads_back(line: FloatArray, vertex_m: FloatArray, part: LinePart) -> bool:
+    """Return whether the ends of the part, looked up on the line, give the part itself: not always where a line meets itself."""
     found = part_between(line, nearest_on_line(line, part.start), nearest_on_line(line, part.end), vertex_m)
     return abs(found.from_m - part.from_m) < SAME_LENGTH_M and abs(found.to_m - part.to_m) < SAME_LENGTH_M

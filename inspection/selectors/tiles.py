@@ -159,7 +159,7 @@ def _check_address(zoom: int, column: int, row: int) -> None:
 
 
 def tile_of_rows(rows: QuerySet[Any], layer: str, fields: Sequence[str], zoom: int, column: int, row: int) -> bytes:
-    """Return the vector tile with one layer of rows, each with its `shape` [EPSG:4326] and these fields. Raises NoSuchTile."""
+    """Return the vector tile with one layer of the first rows, each with its `shape` [EPSG:4326] and these fields. Raises NoSuchTile."""
     _check_address(zoom, column, row)
     tolerance_deg = Value(_tolerance_deg(zoom), output_field=FloatField())
     simple = Func(F("shape"), tolerance_deg, Value(True), function="ST_Simplify", output_field=GeometryField())
@@ -169,7 +169,7 @@ def tile_of_rows(rows: QuerySet[Any], layer: str, fields: Sequence[str], zoom: i
         Value(EXTENT), Value(BUFFER), Value(True),
         function="ST_AsMVTGeom", output_field=BinaryField(),
     )  # fmt: skip
-    sql, parameters = rows.annotate(geom=drawn).order_by().values(*fields, "geom")[:MAX_FEATURES].query.sql_with_params()
+    sql, parameters = rows.annotate(geom=drawn).values(*fields, "geom")[: _max_features(zoom)].query.sql_with_params()
     with connection.cursor() as cursor:
         cursor.execute(
             f"SELECT ST_AsMVT(feature, %s, {EXTENT}, 'geom') FROM ({sql}) feature WHERE geom IS NOT NULL",  # noqa: S608 - made by Django
@@ -184,6 +184,10 @@ def box_of_tile(zoom: int, column: int, row: int) -> Polygon:
     box = Polygon.from_bbox(_box_deg(zoom, column, row))
     box.srid = 4326
     return box
+
+
+def _max_features(zoom: int) -> int:
+    return next((most for last_zoom, most in MAX_FEATURES_FAR if zoom <= last_zoom), MAX_FEATURES)
 
 
 def _tolerance_deg(zoom: int) -> float:
@@ -205,7 +209,7 @@ def vector_tile(zoom: int, column: int, row: int) -> bytes:
                 "inner_west": inner[0], "inner_south": inner[1], "inner_east": inner[2], "inner_north": inner[3],
                 "zoom": zoom, "column": column, "row": row, "west": west, "south": south, "east": east, "north": north,
                 "tolerance_deg": _tolerance_deg(zoom),
-                "most": next((most for last_zoom, most in MAX_FEATURES_FAR if zoom <= last_zoom), MAX_FEATURES),
+                "most": _max_features(zoom),
                 "least_voltage_v": least_voltage_v, "out_of_use_zoom": OUT_OF_USE_ZOOM, **sql_words(),
             },
         )  # fmt: skip

@@ -16,6 +16,7 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.stretches import (
     FloatArray,
     LinePart,
+    leads_back,
     nearest_on_line,
     newest_along,
     part_between,
@@ -41,10 +42,14 @@ class InspectedBy(NamedTuple):
 
 @dataclass(frozen=True)
 class PartOfLine:
-    """A part of a line that one mission inspected last; None: it was never inspected."""
+    """A part of a line that one mission inspected last; None: it was never inspected.
+
+    `can_be_target`: whether its two ends mean this part, as those of a target do; not always where a line meets itself.
+    """
 
     part: LinePart
     inspected: InspectedBy | None
+    can_be_target: bool
 
 
 def parts_inspected(organisation_id: int, line: Asset) -> list[PartOfLine]:
@@ -54,13 +59,13 @@ def parts_inspected(organisation_id: int, line: Asset) -> list[PartOfLine]:
     targets: QuerySet[Any] = inspections_of_assets(organisation_id).filter(OF_LENGTH, asset=line).select_related("mission")
     rows = list(targets.order_by("inspected_at", "pk"))
     pieces = newest_along([_along_m(row.stretch, course, vertex_m) for row in rows], float(vertex_m[-1]))
-    return [
-        PartOfLine(
-            LinePart(place_along(course, vertex_m, from_m), place_along(course, vertex_m, to_m), from_m, to_m),
-            None if number is None else InspectedBy(rows[number].inspected_at, rows[number].mission_id, rows[number].mission.name),
-        )
-        for from_m, to_m, number in pieces
-    ]
+    found = []
+    for from_m, to_m, number in pieces:
+        part = LinePart(place_along(course, vertex_m, from_m), place_along(course, vertex_m, to_m), from_m, to_m)
+        row = None if number is None else rows[number]
+        inspected = None if row is None else InspectedBy(row.inspected_at, row.mission_id, row.mission.name)
+        found.append(PartOfLine(part, inspected, leads_back(course, vertex_m, part)))
+    return found
 
 
 def inspected_shares(organisation_id: int, lines: Collection[int]) -> dict[int, float]:
@@ -69,7 +74,7 @@ def inspected_shares(organisation_id: int, lines: Collection[int]) -> dict[int, 
         return {}
     stretches: dict[int, list[LineString | None]] = defaultdict(list)
     inspected = inspections_of_assets(organisation_id).filter(OF_LENGTH, asset__in=lines)
-    for asset, stretch in inspected.values_list("asset", "stretch"):
+    for asset, stretch in inspected.values_list("asset", "stretch").distinct().order_by():
         stretches[asset].append(stretch)
     shares = {}
     for line in Asset.objects.filter(pk__in=stretches).only("geometry"):
@@ -80,7 +85,8 @@ def inspected_shares(organisation_id: int, lines: Collection[int]) -> dict[int, 
         vertex_m = vertex_lengths_m(course)
         length_m = float(vertex_m[-1])
         pieces = newest_along([_along_m(stretch, course, vertex_m) for stretch in stretches[line.pk]], length_m)
-        shares[line.pk] = sum(to_m - from_m for from_m, to_m, number in pieces if number is not None) / length_m
+        inspected_m = sum(to_m - from_m for from_m, to_m, number in pieces if number is not None)
+        shares[line.pk] = inspected_m / length_m if length_m else 1.0
     return shares
 
 
@@ -101,14 +107,15 @@ def _place_on_line(point: str) -> Func:
 def inspections_tile(organisation_id: int, zoom: int, column: int, row: int) -> bytes:
     """Return the vector tile of the layer `inspections`: parts of lines, towers and bridges, each with `inspected_s` [Unix s].
 
-    A part is there once for each mission. Empty where there is nothing. Raises NoSuchTile.
+    Parts of several missions may lie on each other. Empty where there is nothing. Raises NoSuchTile.
     """
     is_line = Q(asset__kind__in=[AssetKind.LINE, AssetKind.RAILWAY])
-    rows = inspections_of_assets(organisation_id).filter(
-        OF_LENGTH | ~is_line, asset__vanished_at=None, asset__geometry__bboverlaps=box_of_tile(zoom, column, row)
-    )
+    rows: QuerySet[Any] = inspections_of_assets(organisation_id)
+    seen = rows.filter(OF_LENGTH | ~is_line, asset__vanished_at=None, asset__geometry__bboverlaps=box_of_tile(zoom, column, row))
     if zoom < POINTS_ZOOM:
-        rows = rows.filter(is_line)
+        seen = seen.filter(is_line)
+    newest = seen.order_by("asset_id", "stretch", "-inspected_at", "-pk").distinct("asset_id", "stretch")
+    rows = rows.filter(pk__in=newest.values("pk")).order_by("-inspected_at", "pk")
     first, second = _place_on_line("ST_StartPoint"), _place_on_line("ST_EndPoint")
     stretch = Func(
         F("asset__geometry"), Least(first, second), Greatest(first, second), function="ST_LineSubstring", output_field=GeometryField()

@@ -13,7 +13,7 @@ from missions.models.missions import MAX_NAME_LENGTH
 from missions.services.commands.refused import refuse
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.missions import create_mission, note, request_of_mission
-from planning.request import PlanRequest
+from planning.request import PlanRequest, TargetRequest
 from workspace.models import User
 
 COPIED = (
@@ -46,34 +46,51 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "", targets: 
     if not missed:
         none = _("No target of this mission was missed.") if targets is None else _("None of these targets is left to this mission.")
         raise refuse("nothing_missed", none)
-    real = _uavs_of_twins(asked)
-    uavs = tuple(
-        replace(uav, position=uav.returns_to, home=None, uav=real[uav.uav].pk, name=real[uav.uav].name)
-        if uav.uav in real
-        else replace(uav, position=uav.returns_to, home=None)
-        for uav in asked.uavs
-    )
-    names = {uav.name: other.name for uav, other in zip(asked.uavs, uavs, strict=True)}
-    missed = tuple(replace(wish, uav=names.get(wish.uav, wish.uav)) for wish in missed)
+    original = mission.simulates
+    if original is not None:
+        asked, missed = _for_the_uavs_themselves(asked, missed, original)
+    uavs = tuple(replace(uav, position=uav.returns_to, home=None) for uav in asked.uavs)
+    work = mission if original is None else original
     return create_mission(
         organisation=mission.organisation,
         author=author,
         name=(name or _("{name} – follow-up").format(name=mission.name[: MAX_NAME_LENGTH - 20]))[:MAX_NAME_LENGTH],
         request=replace(asked, uavs=uavs, targets=missed, locks=(), departs_at=None),
-        external_id=mission.external_id,
-        attributes=mission.attributes,
+        external_id=work.external_id,
+        attributes=work.attributes,
     )
 
 
-def _uavs_of_twins(asked: PlanRequest) -> dict[int | None, Uav]:
-    """Return the real UAV of each simulated twin of a request, by the twin's key: it flies the follow-up of a simulated copy."""
-    twins = Uav.objects.filter(pk__in=[uav.uav for uav in asked.uavs if uav.uav is not None], twin_of__isnull=False)
-    return {twin.pk: twin.twin_of for twin in twins.select_related("twin_of") if twin.twin_of is not None}
+def _for_the_uavs_themselves(
+    asked: PlanRequest, missed: tuple[TargetRequest, ...], original: Mission
+) -> tuple[PlanRequest, tuple[TargetRequest, ...]]:
+    """Return UAVs and targets of a simulated copy as in the mission that it is a copy of: real UAVs, their names, other systems' ids."""
+    twins = Uav.objects.filter(pk__in=[uav.uav for uav in asked.uavs], twin_of__isnull=False).values_list("pk", "twin_of", "twin_of__name")
+    real_of: dict[int | None, tuple[int | None, str]] = {twin: (real, name) for twin, real, name in twins}
+    name_of: dict[int | None, str] = dict(original.mission_uavs.filter(uav__isnull=False).values_list("uav", "name"))
+    uavs = []
+    for uav in asked.uavs:
+        real, name = real_of.get(uav.uav, (uav.uav, uav.name))
+        uavs.append(replace(uav, uav=real, name=name_of.get(real, name)))
+    names = {twin.name: uav.name for twin, uav in zip(asked.uavs, uavs, strict=True)}
+    known = {_what(target): target for target in original.targets.all()}
+    targets = []
+    for wish in missed:
+        target = known.get(_what_of(wish))
+        ids = {} if target is None else {"external_id": target.external_id, "attributes": target.attributes}
+        targets.append(replace(wish, uav=names.get(wish.uav, wish.uav), **ids))
+    return replace(asked, uavs=tuple(uavs)), tuple(targets)
 
 
 def _what(target: InspectionTarget) -> tuple[Any, ...]:
     """Return what identifies the inspected thing in any mission."""
-    return (target.asset_id, *(None if shape is None else shape.wkb for shape in (target.position, target.stretch)))
+    return (target.asset_id, *(None if shape is None else shape.coords for shape in (target.position, target.stretch)))
+
+
+def _what_of(wish: TargetRequest) -> tuple[Any, ...]:
+    """Return the same of a request."""
+    stretch = None if wish.stretch is None else tuple(map(tuple, wish.stretch))
+    return (wish.asset, None if wish.position is None else tuple(wish.position), stretch)
 
 
 def duplicate_mission(*, mission: Mission, author: User, name: str = "", **other: Any) -> Mission:

@@ -76,6 +76,7 @@ class InspectedPartSerializer(serializers.Serializer):
     stretch = serializers.ListField(
         child=serializers.ListField(child=serializers.FloatField()), min_length=2, max_length=2, help_text="where it begins and ends"
     )
+    can_be_target = serializers.BooleanField(help_text="whether a target with this `stretch` is this part; not where a line meets itself")
     inspected_at = serializers.DateTimeField(allow_null=True)
     mission = InspectingMissionSerializer(allow_null=True)
 
@@ -109,6 +110,7 @@ def _part_json(part: PartOfLine) -> dict[str, Any]:
         "from_m": part.part.from_m,
         "to_m": part.part.to_m,
         "stretch": [list(part.part.start), list(part.part.end)],
+        "can_be_target": part.can_be_target,
         "inspected_at": part.inspected and part.inspected.inspected_at,
         "mission": part.inspected and {"id": str(part.inspected.mission), "name": part.inspected.name},
     }
@@ -122,7 +124,7 @@ class InspectionsTile(APIView):
         operation_id="get_inspections_tile",
         summary="A vector tile of inspections by aircraft of your organisation",
         description="Layer `inspections`: parts of lines and railways and, from zoom 10 on, towers and bridges, each with `asset` and "
-        "`inspected_s`, Unix seconds. What was inspected several times is there several times: draw the greatest `inspected_s` on top.",
+        "`inspected_s`, Unix seconds. Where parts of several missions lie on each other draw the greatest `inspected_s` on top.",
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
     )
     def get(self, request: SignedInRequest, zoom: int, column: int, row: int) -> HttpResponse:

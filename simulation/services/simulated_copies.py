@@ -89,10 +89,16 @@ def _make_copy(mission: Mission, places: Sequence[MissionUav], actor: User) -> M
         is_demo=mission.is_demo,
     )  # fmt: skip
     copy.targets.update(external_id="", attributes={})
+    names = {}
     for place in copy.mission_uavs.all():
         twin = twins[place.sequence]
+        names[place.name] = twin.name
         place.uav, place.name = twin, twin.name
         place.save(update_fields=["uav", "name"])
+    for name, twin_name in names.items():
+        copy.targets.filter(uav_name=name).update(uav_name=twin_name)
+    copy.locks = [lock | {"uav": names.get(lock["uav"], lock["uav"])} for lock in copy.locks]
+    copy.save(update_fields=["locks"])
     approve_mission(mission=copy, actor=actor)
     return copy
 

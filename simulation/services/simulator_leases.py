@@ -15,7 +15,7 @@ from django.db.models import F
 from django.db.models.functions import Now
 from django.utils import timezone
 
-from missions.models import LinkKind, MissionState
+from missions.models import LinkKind, Mission, MissionState
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState
 from simulation.services.simulations import end_now, end_vehicles_now, note
 from simulation.vehicle_models import PRESENT
@@ -125,13 +125,16 @@ def _why_over(simulation: Simulation) -> str | None:
     if vehicles.exclude(uav__is_simulated=True, uav__link=LinkKind.MAVLINK, uav__mavlink_system_id=F("system_id")).exists():
         return "uav-changed"
     mission = simulation.mission
-    if mission is not None and (mission.deleted_at is not None or _is_long_over(mission.state, mission.ended_at)):
+    if mission is not None and (mission.deleted_at is not None or _is_long_over(mission)):
         return "mission-over"
     return None
 
 
-def _is_long_over(state: str, ended_at: Any) -> bool:
-    return state in OVER and (ended_at is None or ended_at + AFTER_MISSION <= timezone.now())
+def _is_long_over(mission: Mission) -> bool:
+    """Whether the mission ended some time ago, and so did all that continue it."""
+    if mission.state not in OVER or (mission.ended_at is not None and mission.ended_at + AFTER_MISSION > timezone.now()):
+        return False
+    return all(map(_is_long_over, mission.continued_by.filter(deleted_at=None)))
 
 
 def _end(simulation: Simulation, reason: str) -> None:

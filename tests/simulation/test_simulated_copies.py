@@ -25,9 +25,9 @@ from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.refused import Refused
 from missions.services.commands.start_slots import reasons_to_wait
-from missions.services.mission_copies import duplicate_mission
+from missions.services.mission_copies import draft_follow_up, duplicate_mission
 from simulation.models import SimulatedVehicle, Simulation
-from simulation.services.idle_twins import retire_idle_twins
+from simulation.services.idle_twins import end_copy, retire_idle_twins
 from simulation.services.rehearsals import set_rule
 from simulation.services.simulations import end_now
 from tests.accounts.users import a_user, client_of
@@ -111,6 +111,24 @@ def test_a_copy_has_the_same_routes_and_twins_of_the_uavs_and_the_mission_stays_
     assert set(UavCommand.objects.values_list("uav", flat=True)) == {twin.pk for twin in twins}
     assert rows_of(real) == before
     assert client.get(f"/api/v1/missions/{copy.pk}").json()["simulates"] == str(real.pk)
+
+
+def test_what_a_copy_missed_is_planned_for_the_uavs_themselves_as_the_mission_names_them(client, person, real):
+    """Ties and ids are those of the mission, whatever the UAVs are called by now."""
+    first, second = real.mission_uavs.order_by("sequence")
+    real.targets.filter(sequence=0).update(uav_name=first.name, external_id="WO-1")
+    Mission.objects.filter(pk=real.pk).update(external_id="Round 7")
+    copy = flies_copy(client, real)
+    twins = [place.name for place in copy.mission_uavs.order_by("sequence")]
+    assert list(copy.targets.values_list("uav_name", "external_id")) == [(twins[0], ""), ("", "")]
+    dispatch_mission(mission=copy, actor=person)
+    end_copy(copy)
+    Uav.objects.filter(pk=first.uav_id).update(name="Renamed")
+    Uav.objects.filter(pk=second.uav_id).update(name=first.name)
+    draft = draft_follow_up(mission=Mission.objects.get(pk=copy.pk), author=person)
+    assert (draft.simulates, draft.external_id) == (None, "Round 7")
+    assert list(draft.mission_uavs.values_list("uav", "name")) == [(first.uav_id, first.name), (second.uav_id, second.name)]
+    assert list(draft.targets.values_list("uav_name", "external_id")) == [(first.name, "WO-1"), ("", "")]
 
 
 @pytest.mark.long

@@ -8,6 +8,7 @@ import pytest
 from missions.models import CredentialKind, LinkKind, Mission, MissionState, Uav
 from missions.services.commands.refused import Refused
 from simulation.models import SimulationChange, SimulationState
+from simulation.selectors import simulations_of_mission
 from simulation.serializers.simulations import simulation_json
 from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, change_simulation, end_simulation, end_vehicle
 from simulation.services.simulator_leases import end_single_ones, end_those_over, release_simulations, renew_simulations, take_changes
@@ -315,6 +316,10 @@ def test_it_ends_a_while_after_its_mission(person, mission):
     Mission.objects.update(state=MissionState.COMPLETED, ended_at=simulation.lifetime_ends_at)
     assert not end_those_over(holder="one/a", ids=[simulation.pk])
     Mission.objects.update(ended_at=LONG_AGO)
+    continuation = Mission.objects.create(organisation=mission.organisation, author=person, name="Continued", continues=mission)
+    assert not end_those_over(holder="one/a", ids=[simulation.pk]), "what continues it is flown yet"
+    assert list(simulations_of_mission(mission.organisation, continuation.pk)) == [simulation]
+    Mission.objects.filter(pk=continuation.pk).update(deleted_at=LONG_AGO)
     assert end_those_over(holder="one/a", ids=[simulation.pk])
 
 

@@ -128,6 +128,8 @@ def test_the_newest_part_is_on_top_and_what_none_covers_stays() -> None:
     assert newest_along([], 100.0) == [(0.0, 100.0, None)]
     assert newest_along([(10.0, 60.0), (80.0, 40.0)], 100.0) == [(0.0, 10.0, None), (10.0, 40.0, 0), (40.0, 80.0, 1), (80.0, 100.0, None)]
     assert newest_along([(0.0, 100.0), (40.0, 60.0), (-5.0, 200.0)], 100.0) == [(0.0, 100.0, 2)]
+    assert newest_along([(0.05, 50.0)], 100.0) == [(0.0, 50.0, 0), (50.0, 100.0, None)]
+    assert newest_along([(0.0, 0.0)], 0.0) == [(0.0, 0.0, 0)]
     assert newest_along([(0.0, 50.0), (50.05, 100.0)], 100.0) == [(0.0, 50.05, 0), (50.05, 100.0, 1)]
 
 

@@ -74,6 +74,7 @@ def test_a_line_that_nobody_inspected_is_one_part_without_a_time(client: Client)
         "from_m": 0.0,
         "to_m": told["length_m"],
         "stretch": [[10.0, 56.0], [10.16, 56.0]],
+        "can_be_target": True,
         "inspected_at": None,
         "mission": None,
     }
@@ -117,6 +118,14 @@ def test_only_aircraft_of_the_own_organisation_inspect(user: User, client: Clien
     assert read_tile(tile(client)) == {}
 
 
+def test_a_part_of_a_ring_that_its_ends_do_not_mean_is_said(user: User, client: Client) -> None:
+    ring = line(*COURSE[:5], (10.016, 56.01), (10.0, 56.01), COURSE[0])
+    inspect(user, ring, (0, 2))
+    done, left = parts_of(client, ring)["parts"]
+    assert (done["can_be_target"], left["can_be_target"]) == (True, False)
+    assert parts_of(client, line(*COURSE))["parts"][0]["can_be_target"]
+
+
 def test_what_is_no_line_or_not_drawn_as_one_is_told(client: Client) -> None:
     assert client.get(f"/api/v1/assets/{tower(COURSE[0]).pk}/inspected-parts").status_code == 404
     assert client.get("/api/v1/assets/999/inspected-parts").status_code == 404
@@ -153,6 +162,7 @@ def drawn(client: Client, *address: int) -> list[Feature]:
 
 def test_the_tiles_draw_each_inspected_part_with_its_time(user: User, client: Client) -> None:
     of_line, of_bridge = line(*COURSE), bridge((10.02, 56.0))
+    inspect(user, of_line, (20, 4), YEAR_AGO - timedelta(days=2))
     inspect(user, of_line, (20, 4), YEAR_AGO)
     inspect(user, of_line, None, MONTH_AGO)
     inspect(user, of_bridge)

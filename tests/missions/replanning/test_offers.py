@@ -13,7 +13,6 @@ from missions.services.commands.flight_progress import FlightEnd, mark_flight_en
 from missions.services.commands.refused import Refused
 from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.steering import mission_in_hand
-from missions.services.mission_copies import draft_follow_up
 from missions.services.replanning import accept_offer, decline_offer, offers, settle_offers, suggest
 from missions.services.replanning.staleness import MIN_LEFT_S, VALID_FOR
 from operation.reasons import Reason
@@ -71,15 +70,6 @@ def test_in_a_simulated_copy_the_other_twin_goes_on_in_a_simulated_mission(fligh
     continuation.refresh_from_db()
     assert continuation.state == MissionState.ABORTED
     assert not claim(*flight.uavs), "nothing is sent to twins that are gone"
-
-
-def test_what_a_simulated_copy_missed_is_planned_for_the_uavs_themselves(flight):
-    as_simulated_copy(flight)
-    mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[0].pk, flight=1, end=FlightEnd.FAILED)
-    end_copy(Mission.objects.get(pk=flight.mission.pk))
-    draft = draft_follow_up(mission=Mission.objects.get(pk=flight.mission.pk), author=flight.author)
-    assert (draft.simulates, {row.uav.twin_of for row in draft.mission_uavs.all()}) == (None, {None})
-    assert [row.name for row in draft.mission_uavs.all()] == [f"Real {uav.name}" for uav in flight.uavs]
 
 
 def test_a_route_is_not_left_amid_photos_beside_wires(flight):
