@@ -2790,6 +2790,8 @@ export interface components {
             to_m: number;
             /** @description where it begins and ends */
             stretch: number[][];
+            /** @description whether a target with this `stretch` is this part; not where a line meets itself */
+            can_be_target: boolean;
             /** Format: date-time */
             inspected_at: string | null;
             mission: components["schemas"]["InspectingMission"] | null;

@@ -1,8 +1,9 @@
 /** Which parts of a line or railway were inspected and when: a strip from its one end to the other, and the way to plan the rest. */
 
-import { freshKey, get } from "../api.js";
+import { ApiError, freshKey, get } from "../api.js";
 import { h, icon, term } from "../dom.js";
 import { AGES, ageOf, tintOf } from "../domain/inspection_age.js";
+import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { dateText, lengthText, numberText, percentText } from "../units.js";
 
@@ -51,7 +52,7 @@ export async function inspectedPartsOf({ id }, { planRest }) {
   const { data } = /** @type {Answer<InspectedParts>} */ (await get(`/assets/${id}/inspected-parts`));
   const { parts, length_m: length, inspected_m: inspected } = data;
   const done = parts.filter((part) => part.inspected_at);
-  const never = parts.filter((part) => !part.inspected_at);
+  const never = parts.filter((part) => !part.inspected_at && part.can_be_target);
   if (!done.length) return [h("p", { class: "caption" }, t("No part of it was inspected yet."))];
   const rows = partsByMission(done);
   const newest = done.map((part) => part.inspected_at ?? "").sort();
@@ -112,18 +113,18 @@ function restButton(line, never, planRest) {
   button.addEventListener("click", async () => {
     button.disabled = true;
     try {
-      const answers = await Promise.all(
-        never.map(
-          async ({ stretch }) =>
-            /** @type {Answer<LinePartsOutput>} */ (await get(`/assets/${line}/parts?ends=${stretch.flat().join()}`))
-              .data,
-        ),
-      );
-      const found = answers.flatMap(({ parts }) => parts);
-      await planRest(
-        found.map(({ stretch }) => ({ asset: line, stretch: /** @type {[number, number][]} */ (stretch) })),
-        key,
-      );
+      /** @type {TargetInputRequest[]} */
+      const targets = [];
+      for (const { stretch } of never) {
+        const path = `/assets/${line}/parts?ends=${stretch.flat().join()}`;
+        const { data } = /** @type {Answer<LinePartsOutput>} */ (await get(path));
+        for (const part of data.parts)
+          targets.push({ asset: line, stretch: /** @type {[number, number][]} */ (part.stretch) });
+      }
+      await planRest(targets, key);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(error.message);
     } finally {
       button.disabled = false;
     }

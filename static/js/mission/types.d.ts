@@ -391,7 +391,6 @@ export interface Caught {
 
 export type Tool = "point" | "box" | "lasso" | "line" | "stretch" | "place" | "rally" | "zone";
 
-/** What the page knows: the state of its store. */
 /** A plan that is done soonest by a number of UAVs, in short. */
 export interface UavNumber {
   uavs: PickedUav[];
@@ -403,17 +402,20 @@ export interface UavNumber {
 
 /** Plans by the number of UAVs. */
 export interface UavNumbers {
-  /** of the selection without its UAVs */
+  /** see keyOfNumbers */
   key: string;
-  /** how many could fly */
-  candidates: number;
+  /** who could fly */
+  candidates: PickedUav[];
   /** fewest UAVs first */
   rows: UavNumber[];
   /** the number that is being planned, null at the end */
   planning: number | null;
+  /** before all numbers were planned */
+  isStopped: boolean;
   fault: string;
 }
 
+/** What the page knows: the state of its store. */
 export interface MissionPageState {
   ground: Ground | null;
   fleet: FleetUav[];

@@ -5,6 +5,7 @@ import { test } from "node:test";
 import { createUavNumbers } from "../../../static/js/mission/actions/uav_numbers.js";
 import { EMPTY, targetOf } from "../../../static/js/mission/selection.js";
 import {
+  bestOf,
   canCompareNumbers,
   keyOfNumbers,
   MAX_UAVS,
@@ -59,6 +60,47 @@ test("they are compared where there are targets, two UAVs and no lock", () => {
   assert.ok(!canCompareNumbers(mission([uav(1)]), [uav(1)]));
   assert.ok(!canCompareNumbers(mission([uav(1)], []), [uav(2)]));
   assert.ok(!canCompareNumbers({ ...mission([uav(1), uav(2)]), locks: [{ uav: "Tern 1", targets: [] }] }, []));
+});
+
+test("candidates are simulated where the mission's UAVs are, else real where there are any", () => {
+  const fleet = [uav(1), uav(2, 9, { is_simulated: true }), uav(3), uav(4, 9, { is_simulated: true })];
+  const ids = (selection) => withCandidates(selection, fleet).uavs.map(({ id }) => id);
+  assert.deepEqual(ids(mission([])), [1, 3]);
+  assert.deepEqual(ids(mission([fleet[1]])), [2, 4]);
+  assert.equal(withCandidates(mission([]), [fleet[1], fleet[3]]).uavs.length, 2);
+});
+
+test("a UAV that flies otherwise makes other plans, one that is taken out does not", () => {
+  const selection = mission([uav(1), uav(2)]);
+  const key = (changed) => keyOfNumbers(changed, selection.uavs);
+  assert.equal(key(mission([uav(2)])), key(selection));
+  assert.notEqual(key(mission([uav(1, 9.5), uav(2)])), key(selection));
+  assert.notEqual(key({ ...selection, return_to_start: !selection.return_to_start }), key(selection));
+});
+
+test("the best reaches most targets, then is done first", () => {
+  const row = (missed, done_s) => ({ missed, done_s });
+  assert.equal(bestOf([row(2, 100), row(0, 900), row(0, 800)])?.done_s, 800);
+  assert.equal(bestOf([]), undefined);
+});
+
+test("more UAVs than can be compared are at once as many as can be", () => {
+  const selection = mission(Array.from({ length: 12 }, (_, number) => uav(number + 1)));
+  const result = planned(...selection.uavs.map((_, place) => route(100 + place)));
+  assert.deepEqual(
+    withFewer(selection, result)?.uavs.map(({ id }) => id),
+    [5, 6, 7, 8, 9, 10, 11, 12],
+  );
+});
+
+test("a tied UAV that stays on the ground does not end the comparison", () => {
+  const selection = mission([uav(1), uav(2), uav(3)], [{ ...tower(1), uav: "Tern 1" }]);
+  const result = planned(route(0, 0), route(600), route(900));
+  assert.equal(numberOf(selection, result)?.flights, 2);
+  assert.deepEqual(
+    withFewer(selection, result)?.uavs.map(({ id }) => id),
+    [1, 3],
+  );
 });
 
 test("a plan that leaves UAVs on the ground is that of fewer", () => {
@@ -151,5 +193,18 @@ test("a fault is told beside the rows that are there", async () => {
   aside.wantInTurn = () => Promise.reject(new Error("The server is busy."));
   await actions.compareUavNumbers();
   assert.equal(store.state.uavNumbers.fault, "The server is busy.");
-  assert.equal(keyOfNumbers(store.state.selection), store.state.uavNumbers.key);
+  assert.equal(store.state.uavNumbers.planning, null);
+});
+
+test("an answer that comes after the panel was closed and opened again changes nothing", async () => {
+  const { store, aside, actions } = page();
+  let answer = () => {};
+  aside.wantInTurn = () => new Promise((resolve) => (answer = resolve));
+  const earlier = actions.compareUavNumbers();
+  const answerEarlier = answer;
+  actions.closeUavNumbers();
+  void actions.compareUavNumbers();
+  answerEarlier();
+  await earlier;
+  assert.deepEqual([store.state.uavNumbers.planning, store.state.uavNumbers.isStopped], [3, false]);
 });

@@ -148,10 +148,14 @@ export function createPlanBeside(store) {
     }
   }
 
+  /** Numbers of UAVs are being planned, in this search. */
+  const isComparing = () => (store.state.uavNumbers?.planning ?? null) !== null;
+
   return {
     stop,
     /** @param {MissionSelection} asked */
     want(asked) {
+      if (isComparing()) return;
       if (asked.targets.length <= MAX_PLANNED_AT_ONCE) void start(asked);
       else {
         wanted = asked;
@@ -194,8 +198,7 @@ export function createPlanBeside(store) {
     /** @param {MissionSelection} selection */
     keepOnlyFor(selection) {
       const { planningBeside } = store.state;
-      const { uavNumbers } = store.state;
-      if (uavNumbers) return; // it is stopped by its own listener
+      if (isComparing()) return; // stopped by the comparison itself
       const bases = OBJECTIVES.map(({ value }) => picks.basisOf({ ...selection, objective: value }));
       if (planningBeside && !bases.includes(planningBeside)) stop();
     },

@@ -11,43 +11,48 @@ import { canCompareNumbers, keyOfNumbers, numberOf, withCandidates, withFewer } 
  * @param {PlanBeside} aside
  */
 export function createUavNumbers({ store, selection, change, wordsOf }, aside) {
-  const none = { uavNumbers: null };
+  let run = 0; // an answer that comes after its comparison was closed changes nothing
 
   function close() {
     if (!store.state.uavNumbers) return;
+    run += 1;
     if (store.state.uavNumbers.planning !== null) aside.stop();
-    store.update(none);
+    store.update({ uavNumbers: null });
   }
 
   store.listen(["selection"], ({ uavNumbers, selection: now }) => {
-    if (uavNumbers && uavNumbers.key !== keyOfNumbers(now)) close();
+    if (uavNumbers && uavNumbers.key !== keyOfNumbers(now, uavNumbers.candidates)) close();
   });
-
-  /** @param {Partial<NonNullable<typeof store.state.uavNumbers>>} changes */
-  function put(changes) {
-    const { uavNumbers } = store.state;
-    if (uavNumbers) store.update({ uavNumbers: { ...uavNumbers, ...changes } });
-  }
 
   return {
     async compareUavNumbers() {
       const asked = selection();
       if (!canCompareNumbers(asked, store.state.fleet)) return;
-      const key = keyOfNumbers(asked);
+      const own = ++run;
       const first = withCandidates(asked, store.state.fleet);
+      /** @param {Partial<NonNullable<typeof store.state.uavNumbers>>} changes */
+      function put(changes) {
+        const { uavNumbers } = store.state;
+        if (uavNumbers && own === run) store.update({ uavNumbers: { ...uavNumbers, ...changes } });
+      }
+      const key = keyOfNumbers(asked, first.uavs);
       store.update({
-        uavNumbers: { key, candidates: first.uavs.length, rows: [], planning: first.uavs.length, fault: "" },
+        uavNumbers: { key, candidates: first.uavs, rows: [], planning: first.uavs.length, isStopped: false, fault: "" },
       });
+      let isWhole = false;
       try {
         await aside.wantInTurn(first, (planned, result) => {
+          if (own !== run) return null;
           const row = numberOf(planned, result);
-          const rows = store.state.uavNumbers?.rows ?? [];
           const next = withFewer(planned, result);
+          const rows = store.state.uavNumbers?.rows ?? [];
+          isWhole = next === null;
           put({ rows: row ? [row, ...rows] : rows, planning: next?.uavs.length ?? null });
           return next;
         });
+        put({ isStopped: !isWhole });
       } catch (error) {
-        if (!isAbort(error)) put({ fault: wordsOf(error) });
+        put(isAbort(error) ? { isStopped: true } : { fault: wordsOf(error) });
       } finally {
         put({ planning: null });
       }

@@ -10,14 +10,38 @@ import { withUav } from "./mission_uavs.js";
 /** @import { FleetUav, MissionSelection, PickedUav, PlanResult, UavNumber } from "../types.d.ts" */
 
 export const MAX_UAVS = 8; // each number is a plan of its own
-const NO_UAVS = { uavs: [] };
 
-/** Plans of these selections differ in their UAVs alone: equal keys. @param {MissionSelection} selection */
-export const keyOfNumbers = (selection) => basisOf({ ...selection, ...NO_UAVS, objective: "makespan" });
+/** @param {PickedUav} uav */
+const idOf = ({ id, name }) => id ?? name;
+
+/**
+ * Plans of these candidates are those of the selection: equal keys. Who of them flies does not count, how they fly does.
+ *
+ * @param {MissionSelection} selection
+ * @param {PickedUav[]} candidates
+ */
+export function keyOfNumbers(selection, candidates) {
+  const uavs = candidates.map((uav) => selection.uavs.find((chosen) => idOf(chosen) === idOf(uav)) ?? uav);
+  return basisOf({ ...selection, uavs, objective: "makespan" });
+}
 
 /** Whether numbers of UAVs can be compared: a lock names the UAV that flies it. @param {MissionSelection} selection @param {FleetUav[]} fleet */
 export const canCompareNumbers = (selection, fleet) =>
   selection.targets.length > 0 && !selection.locks.length && withCandidates(selection, fleet).uavs.length > 1;
+
+/**
+ * Whether a UAV is simulated as the others: a mission with simulated UAVs inspects nothing.
+ *
+ * @param {MissionSelection} selection
+ * @param {FleetUav[]} free
+ * @returns {(uav: FleetUav) => boolean}
+ */
+function likeOthers({ uavs }, free) {
+  const known = uavs.flatMap(({ id }) => free.find((uav) => uav.id === id) ?? []);
+  const others = known.length ? known : free.filter(canFly);
+  const isSimulated = others.length > 0 && others.every((uav) => uav.is_simulated);
+  return (uav) => Boolean(uav.is_simulated) === isSimulated;
+}
 
 /**
  * The selection to be done soonest by the UAVs of the mission and, up to MAX_UAVS, those of the fleet nearest to the targets.
@@ -33,6 +57,7 @@ export function withCandidates(selection, fleet) {
   const chosen = new Set(selection.uavs.map(({ id }) => id));
   const free = fleet
     .filter((uav) => canFly(uav) && !chosen.has(uav.id))
+    .filter(likeOthers(selection, fleet))
     .map((uav) => ({ uav, away_m: away_m(uav) }))
     .sort((a, b) => a.away_m - b.away_m)
     .slice(0, Math.max(0, MAX_UAVS - selection.uavs.length))
@@ -40,8 +65,16 @@ export function withCandidates(selection, fleet) {
   return { ...free.reduce(withUav, selection), objective: "makespan" };
 }
 
-/** Places of the UAVs that the plan uses. @param {PlanResult} result */
-const usedIn = ({ routes }) => routes.flatMap(({ length_m }, sequence) => (length_m > 0 ? [sequence] : []));
+/**
+ * Places of the UAVs that the plan uses, and of those that a target is tied to.
+ *
+ * @param {MissionSelection} selection
+ * @param {PlanResult} result
+ */
+function usedIn({ uavs, targets }, { routes }) {
+  const tied = new Set(targets.map((target) => wishesOf(target).uav));
+  return new Set(routes.flatMap(({ length_m }, place) => (length_m > 0 || tied.has(uavs[place].name) ? [place] : [])));
+}
 
 /**
  * The figures of a plan, or null where it leaves UAVs on the ground: then it is the plan of fewer.
@@ -51,35 +84,39 @@ const usedIn = ({ routes }) => routes.flatMap(({ length_m }, sequence) => (lengt
  * @returns {UavNumber | null}
  */
 export function numberOf(selection, result) {
-  if (usedIn(result).length < selection.uavs.length) return null;
+  if (usedIn(selection, result).size < selection.uavs.length) return null;
   const stays = result.routes.flatMap(staysOf).filter(({ kind }) => kind === "base");
   return {
     uavs: selection.uavs,
     done_s: longestDuration_s(result),
     length_m: result.total_length_m,
-    flights: selection.uavs.length + stays.length,
+    flights: result.routes.filter(({ length_m }) => length_m > 0).length + stays.length,
     missed: result.unassigned.length,
   };
 }
 
+/** The row that is done first of those that reach most targets. @param {UavNumber[]} rows @returns {UavNumber | undefined} */
+export const bestOf = (rows) => [...rows].sort((a, b) => a.missed - b.missed || a.done_s - b.done_s)[0];
+
 /**
- * The selection with the UAVs that this plan uses or, where it uses all, without the one that is back first; null where none may go.
- * UAVs that a target is tied to stay.
+ * The selection with the UAVs that this plan uses or, where it uses all, without those that are back first: one, or so many that MAX_UAVS
+ * are left. UAVs that a target is tied to stay; null where none may go.
  *
  * @param {MissionSelection} selection
  * @param {PlanResult} result
  * @returns {MissionSelection | null}
  */
 export function withFewer(selection, result) {
-  const tied = new Set(selection.targets.map((target) => wishesOf(target).uav));
-  /** @param {PickedUav[]} uavs */
-  const only = (uavs) => (uavs.length && uavs.length < selection.uavs.length ? { ...selection, uavs } : null);
-  const used = new Set(usedIn(result));
-  if (used.size < selection.uavs.length)
-    return only(selection.uavs.filter((uav, sequence) => used.has(sequence) || tied.has(uav.name)));
-  const [first] = result.routes
-    .map(({ duration_s }, sequence) => ({ duration_s, sequence }))
-    .filter(({ sequence }) => !tied.has(selection.uavs[sequence].name))
-    .sort((a, b) => a.duration_s - b.duration_s);
-  return first ? only(selection.uavs.filter((_, sequence) => sequence !== first.sequence)) : null;
+  const { uavs, targets } = selection;
+  const used = usedIn(selection, result);
+  const tied = new Set(targets.map((target) => wishesOf(target).uav));
+  const isFull = used.size === uavs.length;
+  const first = result.routes
+    .map(({ duration_s }, place) => ({ duration_s, place }))
+    .filter(({ place }) => !tied.has(uavs[place].name))
+    .sort((a, b) => a.duration_s - b.duration_s)
+    .slice(0, Math.max(1, uavs.length - MAX_UAVS))
+    .map(({ place }) => place);
+  const kept = uavs.filter((_, place) => (isFull ? !first.includes(place) : used.has(place)));
+  return kept.length && kept.length < uavs.length ? { ...selection, uavs: kept } : null;
 }

@@ -1,9 +1,10 @@
 /** The comparison of numbers of UAVs: when they are done, in how many flights, how far they fly, and one click to choose. */
 
-import { byId, h, icon, setChildren } from "../../../dom.js";
+import { byId, h, icon, keepingFocus, setChildren } from "../../../dom.js";
+import { announce } from "../../../page/toast.js";
 import { t, tn } from "../../../text.js";
 import { durationText, lengthText, numberText } from "../../../units.js";
-import { canCompareNumbers } from "../../uavs/uav_numbers.js";
+import { bestOf, canCompareNumbers } from "../../uavs/uav_numbers.js";
 
 /** @import { MissionActions, MissionPageState, MissionStore, UavNumber } from "../../types.d.ts" */
 
@@ -18,30 +19,40 @@ export function mountUavNumbers(store, actions) {
     else void actions.compareUavNumbers();
   });
 
+  store.listen(["uavNumbers"], ({ uavNumbers }) => {
+    if (!uavNumbers || uavNumbers.planning !== null) return;
+    const best = bestOf(uavNumbers.rows);
+    if (best)
+      announce(t("Done soonest: {count} in {time}.", { count: countText(best), time: durationText(best.done_s) }));
+  });
   store.listen(["uavNumbers", "selection", "fleet", "planning"], (state) => {
     const { uavNumbers, selection, fleet, planning } = state;
     button.hidden = !uavNumbers && !canCompareNumbers(selection, fleet);
     button.toggleAttribute("disabled", Boolean(planning));
     button.setAttribute("aria-expanded", `${uavNumbers !== null}`);
     place.hidden = uavNumbers === null;
-    if (uavNumbers) setChildren(place, ...contentOf(state, actions));
+    if (uavNumbers) keepingFocus(place, () => setChildren(place, ...contentOf(state, actions)));
   });
 }
 
+/** @param {UavNumber} row */
+const countText = ({ uavs }) => tn(uavs.length, "{count} UAV", "{count} UAVs");
+
 /** @param {Readonly<MissionPageState>} state @param {MissionActions} actions */
 function contentOf({ uavNumbers, selection }, actions) {
-  const { rows, planning, fault, candidates } = /** @type {NonNullable<typeof uavNumbers>} */ (uavNumbers);
-  const isBest = (/** @type {UavNumber} */ row) => rows.every(({ done_s }) => done_s >= row.done_s);
+  const { rows, planning, fault, candidates, isStopped } = /** @type {NonNullable<typeof uavNumbers>} */ (uavNumbers);
+  const best = rows.length > 1 ? bestOf(rows) : null;
   return [
     h("p", { class: "caption" }, t("Each is planned to be done soonest, with the UAVs that are named.")),
     planning !== null &&
       h(
         "p",
-        { class: "uav-numbers-progress", role: "status" },
+        { class: "uav-numbers-progress" },
         tn(planning, "Planning {count} UAV …", "Planning {count} UAVs …"),
         h("button", { type: "button", class: "text-button", onclick: () => actions.stopAlternatives() }, t("Stop")),
       ),
     fault && h("p", { class: "caption" }, fault),
+    isStopped && h("p", { class: "caption" }, t("Stopped: not all numbers are planned.")),
     rows.length > 0 &&
       h(
         "table",
@@ -59,15 +70,17 @@ function contentOf({ uavNumbers, selection }, actions) {
         h(
           "tbody",
           {},
-          rows.map((row) => rowOf(row, isInUse(row, selection.uavs), isBest(row) && rows.length > 1, actions)),
+          rows.map((row) => rowOf(row, isInUse(row, selection.uavs), row === best, actions)),
         ),
       ),
     planning === null &&
       rows.length > 0 &&
-      rows[rows.length - 1].uavs.length < candidates &&
+      !isStopped &&
+      rows[rows.length - 1].uavs.length < candidates.length &&
       h("p", { class: "caption" }, t("More UAVs would not be done sooner.")),
     planning === null &&
       rows.length === 0 &&
+      !isStopped &&
       !fault &&
       h("p", { class: "caption" }, t("No number of UAVs can be compared: the plan uses none.")),
   ].filter((part) => part instanceof Node);
@@ -81,7 +94,7 @@ const isInUse = ({ uavs }, chosen) =>
 function rowOf(row, isChosen, isBest, actions) {
   const { uavs, done_s, length_m, flights, missed } = row;
   const names = uavs.map(({ name }) => name).join(", ");
-  const count = tn(uavs.length, "{count} UAV", "{count} UAVs");
+  const count = countText(row);
   return h(
     "tr",
     { class: isChosen ? "present" : "" },
