@@ -94,9 +94,10 @@ def judged(problem: Problem, solution: Solution, flight_s: float) -> Judged:
     return Judged(sum(taken_s), len(flights), problem.target_count - len(done))
 
 
-def of_totals(networks: list[Network], peers: dict[tuple[str, float], dict[str, str]], search_s: float) -> tuple[str, str]:
-    """Return the table of all networks for one time of search, and a sentence with the ratios."""
-    rows, to_mem, to_pyvrp = [], [], []
+def of_totals(networks: list[Network], peers: dict[tuple[str, float], dict[str, str]], search_s: float) -> str:
+    """Print a row for each network; return a sentence with the ratios."""
+    to_mem, to_pyvrp = [], []
+    print("network | flight [s] | edges | flights: here, MEM, PyVRP | total [s] | over MEM | over PyVRP | left out | took [s]")
     for network in networks:
         for flight_s in FLIGHTS_S:
             problem, peer = network.problem(flight_s, 1, Objective.TOTAL), peers[network.name, flight_s]
@@ -109,24 +110,12 @@ def of_totals(networks: list[Network], peers: dict[tuple[str, float], dict[str, 
                 to_pyvrp.append(pyvrp)
             flights = f"{ours.flights}, {peer['mem_flights']}, {peer['pyvrp_flights']}"
             cells = [network.name, f"{flight_s:.0f}", str(len(network.edges)), flights, f"{ours.total_s:.1f}", f"{mem:.4f}", f"{pyvrp:.4f}"]
-            rows.append([*cells, str(ours.left_out), f"{took_s:.1f}"])
-            print(" | ".join(rows[-1]), flush=True)
-    heads = [
-        "network",
-        "flight [s]",
-        "edges",
-        "flights: here, MEM, PyVRP",
-        "total here [s]",
-        "over MEM",
-        "over PyVRP",
-        "left out",
-        "took [s]",
-    ]
+            print(" | ".join([*cells, str(ours.left_out), f"{took_s:.1f}"]), flush=True)
     words = "; ".join(
         f"{name}: median {median(ratios):.4f}, best {min(ratios):.4f}, worst {max(ratios):.4f}"
         for name, ratios in (("over MEM", to_mem), ("over PyVRP", to_pyvrp))
     )
-    return table(heads, rows), f"{search_s:g} s, {len(to_mem)} cases with a solution: {words}."
+    return f"{search_s:g} s, {len(to_mem)} cases with a solution: {words}."
 
 
 def of_ends(networks: list[Network], numbers: list[int], search_s: float) -> str:
@@ -161,11 +150,11 @@ def main() -> int:
     solve(networks[0].problem(FLIGHTS_S[0], 1, Objective.TOTAL), search_s=0.1)  # loads the compiled functions
     found = [of_totals(networks, peers, search_s) for search_s in options.seconds]
     ends = of_ends(networks, options.uavs, max(options.seconds)) if options.uavs else ""
-    summary = "\n".join(f"- {words}" for _rows, words in found)
+    summary = "\n".join(f"- {words}" for words in found)
     print(summary)
     if options.write:
         command = f"`python benchmarks/network_coverage.py --seconds {' '.join(f'{one:g}' for one in options.seconds)}`"
-        text = f"{command}, one core. {machine('numpy', 'numba')}\n\n{summary}\n\n{found[-1][0]}\n\n{ends}"
+        text = f"{command}, one core. {machine('numpy', 'numba')}\n\n{summary}\n\n{ends}"
         write_section(TITLE, text)
     return 0
 
