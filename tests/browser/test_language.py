@@ -104,6 +104,7 @@ def _stores_mission(page: Page, **rest: Any) -> str:
     return str(answer.json()["id"])
 
 
+@pytest.mark.long
 def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     reader = Reader()
     stranger = _german(visitor)

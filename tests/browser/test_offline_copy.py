@@ -138,6 +138,7 @@ def test_a_page_that_was_not_kept_names_the_copies_that_are_there(visitor: Visit
     expect(page.locator(".copy-banner")).to_contain_text(COPY_FROM)
 
 
+@pytest.mark.long
 def test_after_signing_out_nothing_opens_without_a_network(visitor: Visitor, mission: str) -> None:
     context = with_a_worker(visitor)
     page = signed_in(visitor, context, "rory")

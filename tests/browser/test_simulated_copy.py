@@ -61,6 +61,7 @@ def flies_copy(page: Page, mission: str) -> str:
     return page.url.split("/missions/")[1].split("/")[0]
 
 
+@pytest.mark.long
 def test_one_click_leads_to_a_copy_that_simulated_twins_fly(visitor: Visitor, mission: str, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     before = asks(page, f"/missions/{mission}")

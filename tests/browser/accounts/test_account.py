@@ -31,6 +31,7 @@ def newcomer(visitor: Visitor, name: str, role: str = "operator") -> Page:
     return guest
 
 
+@pytest.mark.long
 def test_preferences_are_kept_at_once_and_hold_in_another_browser(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "pia"))
     page.get_by_role("radio", name="miles, feet, mph").check()

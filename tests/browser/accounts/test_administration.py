@@ -122,6 +122,7 @@ def test_a_person_is_found_given_a_role_and_the_role_is_taken_back(visitor: Visi
     expect(row).to_be_visible()
 
 
+@pytest.mark.long
 def test_whoever_is_kept_out_is_out_at_once_and_let_in_again(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"))
     guest = comes_in(visitor, invites(page, "Operator"), "kept")

@@ -118,6 +118,7 @@ def test_a_mission_is_duplicated_with_its_plan(visitor: Visitor) -> None:
     assert row(page, "Twice (copy)").locator(".distance").text_content() == row(page, "Twice").locator(".distance").text_content()
 
 
+@pytest.mark.long
 def test_several_missions_are_deleted_at_once_and_brought_back(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     for number in range(3):

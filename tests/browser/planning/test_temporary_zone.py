@@ -32,6 +32,7 @@ def begins(page: Page) -> None:
     expect(page.get_by_text("Draw a line round the zone")).to_be_visible()
 
 
+@pytest.mark.long
 def test_a_zone_that_is_drawn_on_the_map_outdates_the_plan_which_then_keeps_clear_of_it(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("ada")
     opens_mission(page, "Beside a fire")

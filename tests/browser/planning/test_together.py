@@ -11,7 +11,6 @@ from tests.browser.operator_map import asks, at_zoom, stores_mission, targets, w
 from tests.browser.planning.test_planning import opens_mission as opens_planned
 from tests.browser.planning.test_unsaved_changes import forgives, opens_mission, picks_from_the_search, removes_first_target
 from tests.browser.regions import region
-from tests.cases import long
 
 pytestmark = pytest.mark.browser
 
@@ -80,7 +79,8 @@ def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visi
     visitor.complaints.clear()  # of the requests that were cut
 
 
-@pytest.mark.parametrize("way", ["both", *long("top", "theirs", "copy")])
+@pytest.mark.long
+@pytest.mark.parametrize("way", ["both", "top", "theirs", "copy"])
 def test_where_both_changed_the_same_the_operator_sees_both_and_decides(
     visitor: Visitor, picture: Callable[[Page, str], None], way: str
 ) -> None:

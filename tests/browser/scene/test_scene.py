@@ -112,5 +112,6 @@ def test_without_webgl_it_says_so_and_shows_the_flight_from_above(visitor: Visit
     expect(page.get_by_role("status").filter(has_text="This browser draws no 3D. WebGL is missing")).to_be_visible()
     canvas = page.get_by_role("img", name=re.compile("^View from above, without WebGL: 1 UAV"))
     expect(canvas).to_be_visible()
-    assert canvas.evaluate(CANVAS_COLOURS) > 5  # ground, lines, the planned way and a UAV, not a blank
+    drawn = f"(canvas) => ({CANVAS_COLOURS})(canvas) > 5"  # ground, lines, the planned way and a UAV, not a blank
+    page.wait_for_function(drawn, arg=canvas.element_handle())
     expect(page.get_by_role("radio", name="Chase")).to_be_disabled()
