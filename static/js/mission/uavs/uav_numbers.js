@@ -25,23 +25,25 @@ export function keyOfNumbers(selection, candidates) {
   return basisOf({ ...selection, uavs, objective: "makespan" });
 }
 
-/** Whether numbers of UAVs can be compared: a lock names the UAV that flies it. @param {MissionSelection} selection @param {FleetUav[]} fleet */
-export const canCompareNumbers = (selection, fleet) =>
-  selection.targets.length > 0 && !selection.locks.length && withCandidates(selection, fleet).uavs.length > 1;
-
 /**
- * Whether a UAV is simulated as the others: a mission with simulated UAVs inspects nothing.
+ * UAVs of the fleet that could fly as well: simulated ones only beside simulated ones, as a mission with them inspects nothing.
  *
  * @param {MissionSelection} selection
- * @param {FleetUav[]} free
- * @returns {(uav: FleetUav) => boolean}
+ * @param {FleetUav[]} fleet
  */
-function likeOthers({ uavs }, free) {
-  const known = uavs.flatMap(({ id }) => free.find((uav) => uav.id === id) ?? []);
-  const others = known.length ? known : free.filter(canFly);
+function freeUavs({ uavs }, fleet) {
+  const chosen = new Set(uavs.map(({ id }) => id));
+  const known = fleet.filter(({ id }) => chosen.has(id));
+  const others = known.length ? known : fleet.filter(canFly);
   const isSimulated = others.length > 0 && others.every((uav) => uav.is_simulated);
-  return (uav) => Boolean(uav.is_simulated) === isSimulated;
+  return fleet.filter((uav) => canFly(uav) && !chosen.has(uav.id) && Boolean(uav.is_simulated) === isSimulated);
 }
+
+/** Whether numbers of UAVs can be compared: a lock names the UAV that flies it. @param {MissionSelection} selection @param {FleetUav[]} fleet */
+export const canCompareNumbers = (selection, fleet) =>
+  selection.targets.length > 0 &&
+  !selection.locks.length &&
+  selection.uavs.length + freeUavs(selection, fleet).length > 1;
 
 /**
  * The selection to be done soonest by the UAVs of the mission and, up to MAX_UAVS, those of the fleet nearest to the targets.
@@ -52,17 +54,12 @@ function likeOthers({ uavs }, free) {
  */
 export function withCandidates(selection, fleet) {
   const places = selection.targets.flatMap(({ centre }) => (centre ? [centre] : []));
-  /** @param {FleetUav} uav */
-  const away_m = ({ position }) => Math.min(...places.map((place) => distance_m(position, place)));
-  const chosen = new Set(selection.uavs.map(({ id }) => id));
-  const free = fleet
-    .filter((uav) => canFly(uav) && !chosen.has(uav.id))
-    .filter(likeOthers(selection, fleet))
-    .map((uav) => ({ uav, away_m: away_m(uav) }))
+  const nearest = freeUavs(selection, fleet)
+    .map((uav) => ({ uav, away_m: Math.min(...places.map((place) => distance_m(uav.position, place))) }))
     .sort((a, b) => a.away_m - b.away_m)
     .slice(0, Math.max(0, MAX_UAVS - selection.uavs.length))
     .map(({ uav }) => uav);
-  return { ...free.reduce(withUav, selection), objective: "makespan" };
+  return { ...nearest.reduce(withUav, selection), objective: "makespan" };
 }
 
 /**
