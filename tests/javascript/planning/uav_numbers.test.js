@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createUavNumbers } from "../../../static/js/mission/actions/uav_numbers.js";
+import { createUavNumbers } from "../../../static/js/mission/actions/plan_beside.js";
 import { EMPTY, targetOf } from "../../../static/js/mission/selection.js";
 import {
   bestOf,

@@ -9,10 +9,9 @@ import { isSamePlan, isWorse, summaryOfPlan } from "../plan/compare.js";
 import { qualityOf, wishWordsOf } from "../plan/plan_quality.js";
 import { figuresOf, isPlanCurrent, sentenceOf, unassignedOf } from "../plan/plan_view.js";
 import * as picks from "../selection.js";
-import { cancelJob, createPlanBeside, MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
+import { cancelJob, createPlanBeside, createUavNumbers, MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
 import { planOf, withResult } from "./plan_results.js";
 import { replanSmallChanges } from "./replanning.js";
-import { createUavNumbers } from "./uav_numbers.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { JobLink } from "../../api_types.d.ts" */
