@@ -16,6 +16,7 @@ import {
 import { createStore } from "../../../static/js/store.js";
 
 const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `T${id}` }, centre: [9, 50] });
+const targetAt = (lon) => ({ ...tower(lon), centre: [lon, 50] });
 const uav = (id, lon = 9, more = {}) => ({
   id,
   name: `Tern ${id}`,
@@ -28,11 +29,14 @@ const uav = (id, lon = 9, more = {}) => ({
   ...more,
 });
 const mission = (uavs, targets = [tower(1), tower(2)]) => ({ ...EMPTY, targets, uavs });
-const route = (duration_s, length_m = 1000, bases = 0) => ({
+const route = (duration_s, length_m = 1000, bases = 0, targets = []) => ({
   duration_s,
   departs_s: 0,
   length_m,
-  waypoints: Array.from({ length: bases }, () => ({ kind: "base", task: { hold_s: 60 } })),
+  waypoints: [
+    ...Array.from({ length: bases }, () => ({ kind: "base", target: null, task: { hold_s: 60 } })),
+    ...targets.map((target) => ({ kind: "target", target })),
+  ],
 });
 const planned = (...routes) => ({
   routes,
@@ -86,7 +90,7 @@ test("the best reaches most targets, then is done first", () => {
 
 test("more UAVs than can be compared are at once as many as can be", () => {
   const selection = mission(Array.from({ length: 12 }, (_, number) => uav(number + 1)));
-  const result = planned(...selection.uavs.map((_, place) => route(100 + place)));
+  const result = planned(...selection.uavs.map((_, place) => route(100, 1000 + place)));
   assert.deepEqual(
     withFewer(selection, result)?.uavs.map(({ id }) => id),
     [5, 6, 7, 8, 9, 10, 11, 12],
@@ -113,25 +117,24 @@ test("a plan that leaves UAVs on the ground is that of fewer", () => {
   );
 });
 
-test("of a plan that uses all the one that is back first stays away, unless a target is tied to it", () => {
-  const selection = mission([uav(1), uav(2)]);
-  const result = planned(route(600, 4000, 1), route(900, 5000));
+test("of a plan that uses all the one whose targets are nearest to another stays away, unless a target is tied to it", () => {
+  const selection = mission([uav(1, 9.4), uav(2), uav(3)], [targetAt(9.4), targetAt(9), targetAt(9.01)]);
+  const result = planned(route(600, 4000, 1, [0]), route(900, 5000, 0, [1]), route(800, 5000, 0, [2]));
   assert.deepEqual(numberOf(selection, result), {
     uavs: selection.uavs,
     done_s: 900,
-    length_m: 9000,
-    flights: 3,
+    length_m: 14000,
+    flights: 4,
     missed: 0,
   });
+  const ids = (selection) => withFewer(selection, result)?.uavs.map(({ id }) => id);
+  assert.deepEqual(ids(selection), [1, 3], "the first is alone where its target is");
   assert.deepEqual(
-    withFewer(selection, result)?.uavs.map(({ id }) => id),
-    [2],
+    ids(mission(selection.uavs, [...selection.targets.slice(0, 2), { ...targetAt(9.01), uav: "Tern 2" }])),
+    [1, 2],
   );
-  const tied = mission([uav(1), uav(2)], [{ ...tower(1), uav: "Tern 1" }]);
-  assert.deepEqual(
-    withFewer(tied, result)?.uavs.map(({ id }) => id),
-    [1],
-  );
+  const slow = mission([uav(1, 9.4), uav(2), uav(3, 9, { cruise_speed_mps: 8 })], selection.targets);
+  assert.deepEqual(ids(slow), [1, 2], "the slower of two at one place");
   assert.equal(withFewer(mission([uav(1)]), planned(route(1500))), null);
 });
 

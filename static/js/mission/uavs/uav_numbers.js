@@ -96,8 +96,26 @@ export function numberOf(selection, result) {
 export const bestOf = (rows) => [...rows].sort((a, b) => a.missed - b.missed || a.done_s - b.done_s)[0];
 
 /**
- * The selection with the UAVs that this plan uses or, where it uses all, without those that are back first: one, or so many that MAX_UAVS
- * are left. UAVs that a target is tied to stay; null where none may go.
+ * The seconds by which the targets of a route are farther from the next UAV than from its own, straight from where each takes off.
+ *
+ * @param {MissionSelection} selection
+ * @param {PlanResult} result
+ * @param {number} place of the route
+ */
+function detourWithout_s({ uavs, targets }, { routes }, place) {
+  const places = new Set(routes[place].waypoints.flatMap(({ target }) => target ?? []));
+  return [...places].reduce((seconds, target) => {
+    const { centre } = targets[target];
+    const away_s = uavs.map(({ position, cruise_speed_mps }) =>
+      centre ? distance_m(position, centre) / (cruise_speed_mps ?? 1) : 0,
+    );
+    return seconds + Math.min(...away_s.filter((_, other) => other !== place)) - away_s[place];
+  }, 0);
+}
+
+/**
+ * The selection with the UAVs that this plan uses or, where it uses all, without those whose targets are nearest to others: one, or so many
+ * that MAX_UAVS are left. UAVs that a target is tied to stay; null where none may go.
  *
  * @param {MissionSelection} selection
  * @param {PlanResult} result
@@ -108,12 +126,12 @@ export function withFewer(selection, result) {
   const used = usedIn(selection, result);
   const tied = new Set(targets.map((target) => wishesOf(target).uav));
   const isFull = used.size === uavs.length;
-  const first = result.routes
-    .map(({ duration_s }, place) => ({ duration_s, place }))
-    .filter(({ place }) => !tied.has(uavs[place].name))
-    .sort((a, b) => a.duration_s - b.duration_s)
+  const leavable = uavs
+    .map(({ name }, place) => ({ name, place, detour_s: detourWithout_s(selection, result, place) }))
+    .filter(({ name }) => !tied.has(name))
+    .sort((a, b) => a.detour_s - b.detour_s)
     .slice(0, Math.max(1, uavs.length - MAX_UAVS))
     .map(({ place }) => place);
-  const kept = uavs.filter((_, place) => (isFull ? !first.includes(place) : used.has(place)));
+  const kept = uavs.filter((_, place) => (isFull ? !leavable.includes(place) : used.has(place)));
   return kept.length && kept.length < uavs.length ? { ...selection, uavs: kept } : null;
 }
