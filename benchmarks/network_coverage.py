@@ -94,7 +94,7 @@ def judged(problem: Problem, solution: Solution, flight_s: float) -> Judged:
     return Judged(sum(taken_s), len(flights), problem.target_count - len(done))
 
 
-def of_totals(networks: list[Network], peers: dict[tuple[str, float], dict[str, str]], search_s: float) -> str:
+def compare_totals(networks: list[Network], peers: dict[tuple[str, float], dict[str, str]], search_s: float) -> str:
     """Print a row for each network; return a sentence with the ratios."""
     to_mem, to_pyvrp = [], []
     print("network | flight [s] | edges | flights: here, MEM, PyVRP | total [s] | over MEM | over PyVRP | left out | took [s]")
@@ -118,7 +118,7 @@ def of_totals(networks: list[Network], peers: dict[tuple[str, float], dict[str, 
     return f"{search_s:g} s, {len(to_mem)} cases with a solution: {words}."
 
 
-def of_ends(networks: list[Network], numbers: list[int], search_s: float) -> str:
+def compare_ends(networks: list[Network], numbers: list[int], search_s: float) -> str:
     """Return the table of the earliest ends with so many UAVs."""
     rows = []
     for network in networks:
@@ -148,8 +148,8 @@ def main() -> int:
     networks = [Network.read(folder) for folder in sorted(options.data.iterdir()) if folder.is_dir()]
     networks = [network for network in networks if not options.network or network.name in options.network]
     solve(networks[0].problem(FLIGHTS_S[0], 1, Objective.TOTAL), search_s=0.1)  # loads the compiled functions
-    found = [of_totals(networks, peers, search_s) for search_s in options.seconds]
-    ends = of_ends(networks, options.uavs, max(options.seconds)) if options.uavs else ""
+    found = [compare_totals(networks, peers, search_s) for search_s in options.seconds]
+    ends = compare_ends(networks, options.uavs, max(options.seconds)) if options.uavs else ""
     summary = "\n".join(f"- {words}" for words in found)
     print(summary)
     if options.write:
