@@ -15,6 +15,7 @@ from rest_framework.views import APIView
 from inspection.models import Asset, AssetKind
 from inspection.selectors import NoSuchTile
 from inspection.selectors.picking import NotOneLine
+from inspection.views.ground import TILE_TYPE
 from missions.models import MissionState
 from missions.selectors.line_inspections import PartOfLine, inspections_tile, parts_inspected
 from missions.selectors.missions import MissionOfAsset, missions_of_asset
@@ -23,8 +24,6 @@ from workspace.api.paging import page_of
 from workspace.api.renderers import OneAnswer
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
-
-TILE_TYPE = "application/vnd.mapbox-vector-tile"
 
 
 class AssetMissionSerializer(serializers.Serializer):
