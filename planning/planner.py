@@ -24,7 +24,7 @@ from planning.plan import Plan, PlannedRoute, PlanWarning
 from planning.problem import Objective, Priority
 from planning.progress import OnPlanProgress, PlanProgress, no_progress
 from planning.request import PlanRequest
-from planning.solver.solver import Stop, never
+from planning.solver.solver import Effort, Prover, Stop, never
 
 MAX_SOLVER_CALLS = 40  # of one plan
 MAX_ROUNDS = 6  # of more zones each, for the widest choice of zones and for the narrowest
@@ -74,7 +74,7 @@ class CheckedPlan:
 
 @dataclass
 class _PlanSearch:
-    """The candidates for one request. share: of search_s, for each airspace; solver_calls: of all candidates so far."""
+    """The candidates for one request. share: of the effort's time, for each airspace; solver_calls: of all candidates so far."""
 
     context: PlanningContext
     request: PlanRequest
@@ -82,8 +82,7 @@ class _PlanSearch:
     choice: ZoneChoice
     stop: Stop
     on_progress: OnPlanProgress
-    seed: int
-    search_s: float
+    effort: Effort
     share: float
     solver_calls: int = 0
     may_go_on: bool = True  # whether another candidate stays within MAX_SOLVER_CALLS
@@ -112,8 +111,7 @@ class _PlanSearch:
             self._airspace_of(constraints),
             stop=self.stop,
             on_progress=self.on_progress,
-            seed=self.seed,
-            search_s=self.search_s * self.share * 0.5**constraints.number * (0.5 if constraints.is_by_length else 1.0),
+            effort=self.effort.times(self.share * 0.5**constraints.number * (0.5 if constraints.is_by_length else 1.0)),
             usable_share=constraints.usable_share,
             kept_from=constraints.kept_from,
         )
@@ -138,18 +136,19 @@ def plan(
     on_progress: OnPlanProgress = no_progress,
     seed: int = 7,
     search_s: float = 0.0,
+    prover: Prover | None = None,
 ) -> Plan:
     """Return the best plan found that meets no zone of the context.
 
     First all zones that can be in force at some time of the flight are kept clear of. If some of them are so for a part of it only,
     plans that keep clear of fewer are tried: whatever such a plan really meets is added, until it meets nothing or is no better. In each
-    airspace paths near infrastructure are preferred; where these leave a target out of reach, the shortest ones are tried, too. Raises
-    InvalidRequest, ZonesNotSettled or ZoneNotAvoided.
+    airspace paths near infrastructure are preferred; where these leave a target out of reach, the shortest ones are tried, too. Each
+    assignment that is not proven is handed to the prover, if there is one. Raises InvalidRequest, ZonesNotSettled or ZoneNotAvoided.
     """
     terminals = _terminals(context, request)
     choice = zone_choice(context.zones, request.departs_at, context.rules.flight, terminals)
     share = 0.5 if choice.changes else 1.0
-    search = _PlanSearch(context, request, terminals, choice, stop, on_progress, seed, search_s, share)
+    search = _PlanSearch(context, request, terminals, choice, stop, on_progress, Effort(seed, search_s, prover), share)
     best = freest = _clear_of_most_zones(search)
     if choice.changes and search.may_go_on:
         search.share = share / MAX_ROUNDS

@@ -19,7 +19,7 @@ from planning.request import EndAction, LockRequest, PlanRequest, UavRequest
 from planning.rules import FlightRules
 from planning.solver.exact import MAX_TARGETS
 from planning.solver.search import OnProgress, Progress
-from planning.solver.solver import PROVEN_GAP, Stop, solve
+from planning.solver.solver import PROVEN_GAP, Effort, Stop, solve
 from planning.solver.sorties import merit_of
 
 CHARGED_WH = 1e6
@@ -184,13 +184,14 @@ class LockCost:
     left_out: int
 
 
-def solve_assignment(
-    asked: Assignment, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
-) -> tuple[Solution, LockCost | None]:
-    """The plan; where runs are locked also what that costs. Where a search is needed the two plans share its time half and half."""
+def solve_assignment(asked: Assignment, *, stop: Stop, on_progress: OnProgress, effort: Effort) -> tuple[Solution, LockCost | None]:
+    """The plan; where runs are locked also what that costs. Where a search is needed the two plans share its time half and half.
+
+    The prover is asked for the plan with the locks alone.
+    """
     if asked.free is None:
-        return solve(asked.problem, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s), None
-    half_s = search_s / 2.0 if asked.free.target_count > MAX_TARGETS else search_s
+        return solve(asked.problem, stop=stop, on_progress=on_progress, **vars(effort)), None
+    half = effort.times(0.5) if asked.free.target_count > MAX_TARGETS else effort
 
     def first_half(reported: Progress) -> None:
         on_progress(replace(reported, share=reported.share / 2.0))
@@ -198,8 +199,8 @@ def solve_assignment(
     def second_half(reported: Progress) -> None:
         on_progress(Progress(0.5 + reported.share / 2.0, Reason("working_out_locked")))  # what is drawn stays the plan with the locks
 
-    solution = solve(asked.problem, stop=stop, on_progress=first_half, seed=seed, search_s=half_s)
-    free = solve(asked.free, stop=stop, on_progress=second_half, seed=seed, search_s=half_s)
+    solution = solve(asked.problem, stop=stop, on_progress=first_half, **vars(half))
+    free = solve(asked.free, stop=stop, on_progress=second_half, seed=half.seed, search_s=half.search_s)
     return solution, _cost(asked.free, solution, free)
 
 

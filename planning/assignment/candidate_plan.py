@@ -17,7 +17,7 @@ from planning.problem import Problem, Solution
 from planning.progress import OnPlanProgress, PlanProgress, Sketch
 from planning.request import EndAction, InvalidRequest, PlanRequest
 from planning.solver.search import OnProgress, Progress
-from planning.solver.solver import Stop
+from planning.solver.solver import Effort, Stop
 from planning.trajectory.drawing import TrajectoryBuilder
 from planning.trajectory.heights import inspection_agl_m
 
@@ -80,8 +80,7 @@ def candidate_plan(
     *,
     stop: Stop,
     on_progress: OnPlanProgress,
-    seed: int,
-    search_s: float,
+    effort: Effort,
     usable_share: Mapping[int, float],
     kept_from: Mapping[int, Collection[int]],
 ) -> CandidatePlan:
@@ -125,7 +124,7 @@ def candidate_plan(
     no_landing = _no_landing(request, uavs, targets, airspace)
     asked = assignment(drawing, uavs, grounded, ready, costs, usable_share, no_landing, kept_from)
     sketch = Sketch(drawing, asked.problem, uavs)
-    solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
+    solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), effort=effort)
     left_out += explained_unassigned(solution.unassigned, drawing, uavs, asked, grounded, no_landing, kept_from)
     return CandidatePlan(uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
 

@@ -9,9 +9,10 @@ from planning.problem import BoolArray, FloatArray, IntArray, Problem, Routes
 from planning.solver.constrained_tours import TourLimits, Tours, limited_tours, settled_tours
 from planning.solver.plan_state import ABSENT
 from planning.solver.problem_arrays import Arcs
-from planning.solver.tours import UavArcs, walk_back
+from planning.solver.tours import UavArcs, shortest_tours, walk_back
 
 MAX_TARGETS = 12  # 4,096 sets and 531,441 pairs of a set and a part of it: about a millisecond per UAV
+MAX_REACH_BYTES = 64_000_000  # beyond, the tours of one kind of UAV are in memory at a time, and those that are flown are found again
 
 
 def best_plan(problem: Problem) -> Routes:
@@ -61,7 +62,7 @@ def _best_of_limited(arcs: Arcs) -> tuple[Routes, bool]:
     tours: list[Tours] = []
     length_m, duration_s = [], []
     for uav, (row, most) in enumerate(zip(rows.tolist(), sorties.tolist(), strict=True)):
-        kind[uav] = number.setdefault((most, *_likeness(arcs, row)), len(tours))
+        kind[uav] = number.setdefault((most, *likeness(arcs, row)), len(tours))
         if kind[uav] < len(tours):
             continue
         own = limited_tours(arcs, row, counts)
@@ -83,7 +84,7 @@ def _best_of_limited(arcs: Arcs) -> tuple[Routes, bool]:
     return tuple(routes), all(own.is_whole for own in tours)
 
 
-def _likeness(arcs: Arcs, uav: int) -> tuple[object, ...]:
+def likeness(arcs: Arcs, uav: int) -> tuple[object, ...]:
     """UAVs that are alike in everything have the same."""
     of_uav = (arcs.first_m, arcs.end_m, arcs.limit_m, arcs.speed_mps, arcs.ready_s, arcs.most, arcs.allowed, arcs.class_of)
     more = (arcs.turnaround_s, arcs.again_m, *arcs.burden.first, *arcs.burden.end, *arcs.burden.limit)
@@ -177,7 +178,8 @@ def _best(
         back[:, at] = _turned(more.onward[at])
     kind = _kinds(matrices, fleet, more)
     kinds = kind.max() + 1
-    reach_m = np.empty((kinds, sets, len(target)))
+    keeps_reach = kinds * sets * len(target) * 8 <= MAX_REACH_BYTES
+    reach_m = np.empty((kinds if keeps_reach else 1, sets, len(target)))
     length_m = np.empty((kinds, 1, sets))
     duration_s = np.empty((kinds, 1, sets))
     is_contested = np.zeros(sets, dtype=np.bool_)
@@ -193,16 +195,21 @@ def _best(
         arcs = UavArcs(first_m[uav], back_m[flying], end_m[uav], target, fleet.allowed[uav])
         first, end, limit = more.first[:, uav].copy(), more.end[:, uav].copy(), more.limit[:, uav].copy()
         limits = TourLimits(fleet.limit_m[uav], fleet.most[uav], counts, first, back[flying], end, limit)
-        if settled_tours(arcs, limits, reach_m[number], own_m, is_contested):
+        if settled_tours(arcs, limits, reach_m[number if keeps_reach else 0], own_m, is_contested):
             return False, length, order
         for members in range(sets):
             own_s[members] = own_m[members] / fleet.speed_mps[uav] + services_s[members] + fleet.ready_s[uav]
         own_s[0] = 0.0
 
     share, _ = _shared_out(kind, length_m, duration_s, _sums_s(weight, np.arange(targets), targets), targets, is_makespan)
+    present = -1
     for uav in range(uavs):
+        number = kind[uav]
         arcs = UavArcs(first_m[uav], back_m[fleet.class_of[uav]], end_m[uav], target, fleet.allowed[uav])
-        length[uav] = walk_back(share[uav], reach_m[kind[uav]], arcs, order[uav])
+        if not keeps_reach and number != present:
+            shortest_tours(arcs, reach_m[0], duration_s[number, 0])  # durations are no longer needed
+            present = number
+        length[uav] = walk_back(share[uav], reach_m[number if keeps_reach else 0], arcs, order[uav])
     return True, length, order
 
 

@@ -1,8 +1,8 @@
 """Lower bounds: what no plan can do better than, if it leaves out as little as the best one does."""
 
 import random
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -22,7 +22,18 @@ TIMEOUT = 20  # steps without a better bound before the steps get shorter
 HAIR = 1e-9  # the share by which rounding could lift a bound
 
 
-def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, routes: Routes, *, seed: int) -> float:
+@dataclass(frozen=True)
+class Subsets:
+    """The plans for a few targets alone that raise a bound: of how many targets, how many such plans at most, and what ends it earlier."""
+
+    targets: int = SUBSET_TARGETS
+    trials: int = SUBSET_TRIALS
+    stop: Callable[[], bool] = lambda: False
+
+
+def lower_bound(
+    problem: Problem, usable: BoolArray, needed_m: FloatArray, routes: Routes, *, seed: int, subsets: Subsets = Subsets()
+) -> float:
     """In the unit of the objective; the routes are any plan that keeps the limits, needed_m (u, v) as of `needed_range_m`.
 
     The best plan leaves out no more by weight than this one: a target that weighs more than what this plan leaves out of the usable ones
@@ -55,7 +66,7 @@ def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, route
     bound = max(bound, _by_forest(ways, shift_m, usable, certain, total_m))
     if arcs.is_makespan:
         value = max(problem.durations_s(routes))
-        bound = _by_subsets(closed, usable, certain, alone, bound, value - ready_s, seed)
+        bound = _by_subsets(closed, usable, certain, alone, bound, value - ready_s, seed, subsets)
     return (bound + ready_s) * (1.0 - HAIR)
 
 
@@ -259,15 +270,17 @@ def _ascent(
     return best, best_reward
 
 
-def _by_subsets(arcs: Arcs, usable: BoolArray, certain: IntArray, alone: FloatArray, bound: float, value: float, seed: int) -> float:
+def _by_subsets(
+    arcs: Arcs, usable: BoolArray, certain: IntArray, alone: FloatArray, bound: float, value: float, seed: int, subsets: Subsets
+) -> float:
     """The bound raised by the best plans for a few certain targets: the farthest, then others drawn for one of them."""
     shuffler = random.Random(seed)
     farthest = certain[np.argsort(-alone[certain], kind="stable")]
-    chosen = farthest[:SUBSET_TARGETS].tolist()
+    chosen = farthest[: subsets.targets].tolist()
     best = _longest_s(arcs, usable, chosen)
-    others = farthest[: 4 * SUBSET_TARGETS].tolist()
-    for _ in range(SUBSET_TRIALS if len(others) > len(chosen) else 0):
-        if best >= value * (1.0 - HAIR):
+    others = farthest[: 4 * subsets.targets].tolist()
+    for _ in range(subsets.trials if len(others) > len(chosen) else 0):
+        if best >= value * (1.0 - HAIR) or subsets.stop():
             break
         trial = list(chosen)
         trial[shuffler.randrange(len(trial))] = shuffler.choice([target for target in others if target not in chosen])

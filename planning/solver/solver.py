@@ -1,7 +1,8 @@
 """Assignment and order: proven for a few targets, else the best plan of several searches side by side, with a bound below it."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 from operation.reasons import Reason
 from planning.problem import BoolArray, FloatArray, Objective, Problem, Routes, Solution, Unassigned
@@ -19,7 +20,55 @@ PIECES = (1, 2, 4, 8)  # of each line, one after another
 PIECES_SHARE = 0.4  # of the time of a search
 EXACT, SEARCH = "exact", "ruin and recreate"  # what Solution.method says
 
+PROOF_TO_SEARCH = 6  # a proof takes as many times as long as the search before it
+
 Stop = Callable[[], bool]
+
+
+@dataclass(frozen=True, eq=False)
+class BoundedPlan:
+    """A plan of a problem, and a bound in the objective's unit; usable and needed_m as of `lower_bound`."""
+
+    problem: Problem
+    usable: BoolArray
+    needed_m: FloatArray
+    routes: Routes
+    bound: float
+
+    @property
+    def is_proven(self) -> bool:
+        value = self.problem.value(self.routes)
+        return value - self.bound <= PROVEN_GAP * value
+
+
+@dataclass(frozen=True)
+class Proof:
+    """The better of a plan and those found beside it, and a bound: None where there is no better plan. method: what ended the search."""
+
+    routes: Routes
+    bound: float | None
+    method: str
+
+
+class Prover(Protocol):
+    """Looks for a better plan and a better bound. `proof.prove` loads a large library: only programs that prove something import it."""
+
+    def __call__(
+        self, found: BoundedPlan, *, time_s: float, stop: Stop, on_found: Callable[[Routes, float], None], seed: int
+    ) -> Proof | None: ...
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How a solution is looked for; see `solve`."""
+
+    seed: int = 7
+    search_s: float = 0.0
+    prover: Prover | None = None
+
+    def times(self, share: float) -> "Effort":
+        """The same with a share of the time."""
+        return replace(self, search_s=self.search_s * share)
 
 
 def never() -> bool:
@@ -30,14 +79,23 @@ def no_report(progress: Progress) -> None:
     """For callers that do not watch."""
 
 
-def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_report, seed: int = 7, search_s: float = 0.0) -> Solution:
+def solve(
+    problem: Problem,
+    *,
+    stop: Stop = never,
+    on_progress: OnProgress = no_report,
+    seed: int = 7,
+    search_s: float = 0.0,
+    prover: Prover | None = None,
+) -> Solution:
     """The best plan found: first it leaves out as little as possible, high priorities last, then the objective counts.
 
     Every route keeps its UAV's limits, and a locked run is flown as it is wished or left out whole. Up to 12 targets, a locked run being
     one, the plan is the best there is; only where battery or range leave too many tours to weigh (see `constrained_tours.py`) the gap tells
     what is not proven. Beyond, the answer depends on the problem and the seed alone as long as `search_s` is 0; with it the search takes
     about so many seconds. `stop` is asked several times a second; once it is true, the best plan so far is returned. Progress tells the
-    visits of each UAV over all its sorties. Raises InvalidProblem.
+    visits of each UAV over all its sorties. A plan that is not proven is then handed to the prover, if there is one, for PROOF_TO_SEARCH
+    times as long. Raises InvalidProblem.
     """
     rows = unfolded(problem)
 
@@ -52,17 +110,18 @@ def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_
             on_progress=lambda reported: on_progress(_expanded(reported, lambda routes: of_uavs(whole.expanded(routes)))),
             seed=seed,
             search_s=search_s,
+            prover=prover,
         )
         routes, left_out = whole.expanded(routes), whole.expanded_reasons(left_out)
         bound = bound if whole.is_whole else 0.0  # nothing is known of the ways through the runs that were not looked at
     else:
         tell = (lambda reported: on_progress(_expanded(reported, of_uavs))) if rows.owner else on_progress
-        routes, left_out, bound, method = _solved(rows, stop=stop, on_progress=tell, seed=seed, search_s=search_s)
+        routes, left_out, bound, method = _solved(rows, stop=stop, on_progress=tell, seed=seed, search_s=search_s, prover=prover)
     return _solution(rows, routes, left_out, bound, method)
 
 
 def _solved(
-    problem: Problem, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
+    problem: Problem, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float, prover: Prover | None
 ) -> tuple[Routes, tuple[Unassigned, ...], float | None, str]:
     """Routes, what they leave out, a bound (none: the plan is the best there is), and the method."""
     if problem.target_count <= exact.MAX_TARGETS:
@@ -70,8 +129,12 @@ def _solved(
         if is_proven and sum(len(route) for route in routes) == problem.target_count:
             return routes, (), None, EXACT
         needed_m = needed_range_m(problem)
-        bound = None if is_proven else lower_bound(problem, reachable(problem, needed_m), needed_m, routes, seed=seed)
-        return routes, reasons(problem, needed_m, routes), bound, EXACT
+        if is_proven:
+            return routes, reasons(problem, needed_m, routes), None, EXACT
+        usable = reachable(problem, needed_m)
+        bounded = BoundedPlan(problem, usable, needed_m, routes, lower_bound(problem, usable, needed_m, routes, seed=seed))
+        proof = _proven(bounded, EXACT, prover, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
+        return proof.routes, reasons(problem, needed_m, proof.routes), proof.bound, proof.method
     needed_m = needed_range_m(problem)
     usable = reachable(problem, needed_m)
     if not usable.any():
@@ -91,8 +154,23 @@ def _solved(
         search_s=search_s - searched_s,
         start=start,
     )
-    routes = with_runs(problem, chains, found.routes)
-    return routes, reasons(problem, needed_m, routes), found.bound, SEARCH
+    bounded = BoundedPlan(problem, usable, needed_m, with_runs(problem, chains, found.routes), found.bound or 0.0)
+    proof = _proven(bounded, SEARCH, prover, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
+    return proof.routes, reasons(problem, needed_m, proof.routes), proof.bound, proof.method
+
+
+def _proven(
+    found: BoundedPlan, method: str, prover: Prover | None, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
+) -> Proof:
+    """Return what a prover makes of a plan; the plan itself without one, if nothing is left to prove, or once it is stopped."""
+    plan = Proof(found.routes, found.bound, method)
+    if prover is None or found.is_proven or stop():
+        return plan
+
+    def on_found(routes: Routes, bound: float) -> None:
+        on_progress(Progress(0.99, progress_message(found.problem, routes), routes, bound))
+
+    return prover(found, time_s=PROOF_TO_SEARCH * search_s, stop=stop, on_found=on_found, seed=seed) or plan
 
 
 def _coarse_problems(problem: Problem, chains: Sequence[Chain]) -> list[Reduced]:

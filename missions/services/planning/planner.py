@@ -25,7 +25,7 @@ from planning.plan_json import plan_to_json
 from planning.planner import ZonesNotSettled, plan, plan_on_map
 from planning.progress import OnPlanProgress, PlanProgress, no_progress
 from planning.request import PlanRequest
-from planning.solver.solver import Stop, never
+from planning.solver.solver import Prover, Stop, never
 from planning.solver.warm_up import rehearse as rehearse_solvers
 from planning.trajectory.warm_up import rehearse as rehearse_drawing
 from workspace.jobs.planning_lock import hold_planning_lock, release_planning_lock
@@ -100,6 +100,7 @@ def make_plan(
     on_progress: OnPlanProgress = no_progress,
     seed: int = 7,
     search_s: float = 0.0,
+    prover: Prover | None = None,
     as_text: bool = False,
 ) -> dict[str, Any]:
     """Return the plan in the shape of the API, optionally with parts of it `as_text` (see plan_to_json).
@@ -119,7 +120,7 @@ def make_plan(
         terrain = terrain_at(ground.dataset_version)
         try:
             with hold_planning_lock():
-                found = plan(context, request, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
+                found = plan(context, request, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s, prover=prover)
                 answer = plan_to_json(found, as_text=as_text)
         except ZonesNotSettled as error:
             raise GraphOutdated from error
