@@ -1,7 +1,7 @@
 """The Celery application, whose queues are
 
-`data` (imports, graph), `flight` (urgent for UAVs on a mission: starts, ends of commands, alerts), `planning` (large plans) and
-`simulation` (rehearsals).
+`data` (imports, graph), `flight` (urgent for UAVs on a mission: starts, ends of commands, alerts), `planning` (large plans), `proofs`
+(better bounds and plans, of low priority) and `simulation` (rehearsals).
 """
 
 import os
@@ -23,7 +23,8 @@ app.steps["worker"].update({LoopPulse, SoftEnd})
 watch_tasks()
 
 
-MAKES_NO_PLANS = {"data", "flight", "simulation"}
+PROOF_NICENESS = 15  # proofs give way to every other program
+WITHOUT_WARM_UP = {"data", "flight", "proofs", "simulation"}  # nobody waits for a plan of theirs
 
 
 @worker_before_create_process.connect
@@ -34,8 +35,11 @@ def keep_before_fork(**_: object) -> None:
 
 @worker_process_init.connect
 def warm_up_process(**_: object) -> None:
-    """Load what plans need before a worker's process takes a task, unless its queues have no plans."""
-    if not set(app.amqp.queues.consume_from) <= MAKES_NO_PLANS:
+    """Load what plans need before a worker's process takes a task, where somebody waits for plans."""
+    queues = set(app.amqp.queues.consume_from)
+    if queues == {"proofs"}:
+        os.nice(PROOF_NICENESS)
+    if not queues <= WITHOUT_WARM_UP:
         from missions.services import warm_up  # noqa: PLC0415 (Django is set up only when this runs)
 
         begin_tracing("worker")

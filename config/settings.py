@@ -286,6 +286,7 @@ CELERY_TASK_ROUTES = {
     "telemetry.tasks.settle_command_alerts": {"queue": "flight"},
     "missions.tasks.look_after_offers": {"queue": "data"},
     "missions.tasks.*": {"queue": "planning"},
+    "missions.proof_tasks.*": {"queue": "proofs"},
     "simulation.tasks.make_demo_missions": {"queue": "planning"},
     "simulation.tasks.*": {"queue": "simulation"},
 }

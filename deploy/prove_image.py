@@ -55,6 +55,7 @@ PROGRAMS = (
     "worker-data",
     "worker-flight",
     "worker-planning",
+    "worker-proofs",
     "worker-simulation",
     "beat",
 )

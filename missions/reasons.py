@@ -75,6 +75,8 @@ SENTENCES = register_sentences({
     "planning_targets": ngettext_noop("Planning %(count)s target", "Planning %(count)s targets"),
     "looking_up_targets": gettext_noop("Looking up the targets"),
     "planning_photos": gettext_noop("Planning photos: target %(target)s of %(targets)s"),
+    "looking_for_better_plan": gettext_noop("Looking for a better plan"),
+    "proof_ended": gettext_noop("Looked for a better plan"),
     "planned": gettext_noop("Planned"),
     "planning_stopped": gettext_noop("Stopped; the best plan until then is kept"),
     "no_network": gettext_noop("There is no network yet: import infrastructure first, or wait until it has been linked."),

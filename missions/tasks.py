@@ -25,7 +25,7 @@ HARD_LIMIT_S = 600
 SHARES_OF_A_SEARCH = 10  # one of several searches gets this part of the time: a user waits while UAVs fly
 
 
-def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
+def work_on(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
     """Take the job, do it, and store how it ended. Safe to run twice: a job is held by one worker, and finished once."""
     job = start_job(job_id=job_id)
     if job is None:
@@ -56,7 +56,7 @@ def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
         raise
 
 
-def _noted_by(watch: JobWatch) -> OnPlanProgress:
+def noted_by(watch: JobWatch) -> OnPlanProgress:
     def note(progress: PlanProgress) -> None:
         watch.note(progress.share, progress.message, progress.draw)
 
@@ -75,12 +75,12 @@ def solve_plan(job_id: str) -> None:
         plan = services.make_plan(
             request=services.request_from_json(job.parameters["request"]),
             stop=watch.stop,
-            on_progress=_noted_by(watch),
+            on_progress=noted_by(watch),
             search_s=settings.ROUTING_RULES.large_plan_search_s,
         )
         finish_job(job=job, result=plan, message=_end_message(watch))
 
-    _work(job_id, do)
+    work_on(job_id, do)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -91,12 +91,12 @@ def plan_mission(job_id: str) -> None:
         services.plan_mission_for_job(
             job=job,
             stop=watch.stop,
-            on_progress=_noted_by(watch),
+            on_progress=noted_by(watch),
             search_s=settings.ROUTING_RULES.large_plan_search_s,
             message=lambda: _end_message(watch),
         )
 
-    _work(job_id, do)
+    work_on(job_id, do)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -108,7 +108,7 @@ def replan_mission(job_id: str) -> None:
             job=job, stop=watch.stop, search_s=settings.ROUTING_RULES.large_plan_search_s / SHARES_OF_A_SEARCH, note=watch.note
         )
 
-    _work(job_id, do)
+    work_on(job_id, do)
 
 
 @shared_task(time_limit=60, soft_time_limit=55)

@@ -41,6 +41,7 @@ urlpatterns = [
     path("missions/commands", MissionsCommands.as_view(), name="api-missions-commands"),
     path("missions/<uuid:mission_id>", views.MissionDetail.as_view(), name="api-mission"),
     path("missions/<uuid:mission_id>/plan", views.MissionPlan.as_view(), name="api-mission-plan"),
+    path("missions/<uuid:mission_id>/proof", views.MissionProof.as_view(), name="api-mission-proof"),
     path("missions/<uuid:mission_id>/restore", views.MissionRestore.as_view(), name="api-mission-restore"),
     path("missions/<uuid:mission_id>/duplicate", views.MissionDuplicate.as_view(), name="api-mission-duplicate"),
     path("missions/<uuid:mission_id>/follow-up", views.MissionFollowUp.as_view(), name="api-mission-follow-up"),

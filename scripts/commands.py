@@ -8,7 +8,9 @@ from scripts.places import PROJECT_DIR
 
 GRANIAN_LOG = PROJECT_DIR / "operation" / "granian_log.json"
 BACKLOG = "4096"  # pending connections of a program: the default limit of Linux (net.core.somaxconn)
-QUEUES = ("data", "flight", "planning", "simulation")
+QUEUES = ("data", "flight", "planning", "proofs", "simulation")
+
+PROOF_MEMORY_KB = 500_000  # a process that holds more after a task is replaced
 
 # The C library gives each thread a pool of its own, up to eight per core, and returns little memory of a pool. Python's threads run in
 # turn, so two pools suffice.
@@ -63,6 +65,8 @@ def worker(queue: str, processes: int) -> list[str]:
     """Return the command for the worker of a queue. Workers do not need each other's events, and start sooner without them."""
     arguments = ["--loglevel", os.environ.get("SPANWISE_LOG_LEVEL", "WARNING"), "--queues", queue, "--hostname", f"{queue}@%h"]
     arguments += ["--concurrency", str(processes), "--without-gossip", "--without-mingle", "--without-heartbeat"]
+    if queue == "proofs":  # alone loads OR-tools, and returns its memory after a large proof
+        arguments += ["--include", "missions.proof_tasks", "--max-memory-per-child", str(PROOF_MEMORY_KB)]
     return celery("worker", *arguments)
 
 

@@ -18,8 +18,8 @@ DEMO_USER = "demo"
 WEB_PROGRAMS = ("web-1", "web-2")  # pages and API, each with a socket of its own
 SERVING_PROGRAMS = (*WEB_PROGRAMS, "uav-link", "live")  # behind the proxy
 PROGRAMS_WITH_METRICS = (  # each with a metrics socket of its own
-    *WEB_PROGRAMS, "uav-link", "live", "worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator",
-    "simulator", "beat",
+    *WEB_PROGRAMS, "uav-link", "live", "worker-data", "worker-flight", "worker-planning", "worker-proofs", "worker-simulation", "gateway",
+    "estimator", "simulator", "beat",
 )  # fmt: skip
 
 

@@ -183,6 +183,7 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
         "flat_ground_assumed": mission.flat_ground_assumed,
         "terrain": FLAT_GROUND if mission.flat_ground_assumed else TERRAIN_MODEL,
         **(NO_QUALITY | {name: value for name, value in (mission.plan_quality or {}).items() if name in NO_QUALITY}),
+        "proof": (mission.plan_quality or {}).get("proof"),
         "locks": mission.locks,
         "warnings": with_texts(mission.plan_warnings),
         "routes": [_route(route, mission, sequence_of) for route in mission.routes.all()],

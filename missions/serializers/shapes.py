@@ -150,6 +150,9 @@ class QualitySerializer(serializers.Serializer):
         "of the longest flight, along the ways preferred there; not there in plans of before",
     )
     method = serializers.CharField(help_text="how it was found; empty: not known")
+    proof = serializers.UUIDField(
+        required=False, allow_null=True, help_text="of a stored plan: the job that looks for a better one; null or not there: none has yet"
+    )
     wish = WishSerializer(allow_null=True, help_text="null where nothing is locked")
 
 

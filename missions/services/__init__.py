@@ -40,6 +40,7 @@ from missions.services.missions import (
     request_of_mission,
     restore_mission,
 )
+from missions.services.plan_proofs import NothingToProve, begin_proof
 from missions.services.planning.explanations import explain_route, explain_unreached_target
 from missions.services.planning.planner import GraphOutdated, make_plan, warm_up
 from planning.assignment.options import refuse_contradictions
@@ -79,12 +80,14 @@ __all__ = [
     "MissionFrozen",
     "NotDeleted",
     "NothingToPlan",
+    "NothingToProve",
     "PlanRequest",
     "SystemIdQuota",
     "SystemIdTaken",
     "TargetRequest",
     "UavExternalIdTaken",
     "UavRequest",
+    "begin_proof",
     "change_base",
     "change_mission",
     "change_route",

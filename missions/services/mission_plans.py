@@ -25,6 +25,7 @@ from workspace.jobs.services import JobCancelled, finish_job
 from workspace.models import Job, User
 
 PLANNING_TASK = "missions.tasks.solve_plan"
+PROOF_TASK = "missions.proof_tasks.prove_mission"
 QUALITY = (
     "lower_bound_m",
     "lower_bound_s",
@@ -55,7 +56,7 @@ def plan_mission(*, mission: Mission, actor: User | None, expected_revision: int
 
 def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) -> bool:
     """Store the plan that a job has already made, if its request equals the mission's; returns False where it does not."""
-    if job.task != PLANNING_TASK or not job.result or "request" not in job.parameters:
+    if job.task not in {PLANNING_TASK, PROOF_TASK} or not job.result or "request" not in job.parameters:
         return False
     wanted, asked = plannable_request(mission=mission), request_from_json(job.parameters["request"])
     if len(asked.targets) != len(wanted.targets):

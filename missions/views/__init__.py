@@ -10,7 +10,7 @@ from missions.views.mission_sets import (
     MissionsDelete,
     MissionsRestore,
 )
-from missions.views.missions import MissionDetail, MissionHistory, MissionList, MissionPlan, MissionRestore
+from missions.views.missions import MissionDetail, MissionHistory, MissionList, MissionPlan, MissionProof, MissionRestore
 from missions.views.plans import PlanList
 from missions.views.uavs import UavDetail, UavList, UavMissions, UavRestore
 
@@ -26,6 +26,7 @@ __all__ = [
     "MissionList",
     "MissionPlan",
     "MissionPresence",
+    "MissionProof",
     "MissionRestore",
     "MissionsDelete",
     "MissionsRestore",

@@ -309,6 +309,26 @@ class MissionPlan(_PlansWhenAsked):
             return _plan_and_answer(request.user, mission, revision=mission.revision if expected is None else expected)
 
 
+class MissionProof(_PlansWhenAsked):
+    @extend_schema(
+        operation_id="prove_mission_plan",
+        summary="Look for a better plan of a mission in the background, and prove how good its plan is",
+        description="For plans of up to 40 targets that are not proven. The job takes about a minute, yields to all other work, and can be "
+        "stopped. Then the quality of the mission's plan holds the better bound, and the job's result is the best plan found: if that is "
+        "better, PATCH the mission with this job as `plan_of`. Asked again for the same plan, the answer is the same job.",
+        request=None,
+        responses={
+            202: OpenApiResponse(shapes.JobLinkSerializer, description="A job looks for it; see Location."),
+            409: OpenApiResponse(description="`nothing_to_prove`, or the mission cannot be changed."),
+        },
+    )
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        with api_problems():
+            job = services.begin_proof(mission=mission)
+        return job_answer(job, mission=str(mission.pk))
+
+
 class MissionRestore(APIView):
     @extend_schema(
         operation_id="restore_mission", summary="Bring a deleted mission back", request=None, responses={200: shapes.MissionSerializer}

@@ -21,6 +21,7 @@ from missions.services import (
     MissionFrozen,
     NotDeleted,
     NothingToPlan,
+    NothingToProve,
     SystemIdQuota,
     SystemIdTaken,
     UavExternalIdTaken,
@@ -98,6 +99,9 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
         raise ApiProblem(400, "invalid", f"{place}: {fault}", details=details) from error
     except NothingToPlan as error:
         raise ApiProblem(400, "nothing_to_plan", _("A mission needs at least one UAV and one target to be planned.")) from error
+    except NothingToProve as error:
+        message = _("Nothing to look for: the plan is proven, changed by hand or too large, or there is none.")
+        raise ApiProblem(409, "nothing_to_prove", message) from error
     except NoGraph as error:
         message = "There is no network to plan on yet: import infrastructure first, or wait until it has been linked."
         raise ApiProblem(503, "no_graph", message, retry_after_s=RETRY_AFTER_S) from error

@@ -1,7 +1,8 @@
 """Become one of the programs, in a container: spanwise NAME [ARGUMENT...]
 
 web live uav-link proxy
-gateway estimator simulator · worker-data worker-flight worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
+gateway estimator simulator · worker-data worker-flight worker-planning worker-proofs worker-simulation beat
+migrate · manage ARGUMENT... · healthy
 backup [FOLDER] · restore FOLDER [--replace]     (the database and flight logs; the site keeps the key itself)
 
 The image's entry point. All configuration comes from the environment: docs/deployment.md. SIGTERM shuts each of them down gracefully.

@@ -143,6 +143,7 @@ def _programs(places: Places, sockets: Path) -> list[Program]:
         _worker(places, "data", commands.data_processes()),
         _worker(places, "flight", 1),
         _worker(places, "planning", max(1, min(4, (os.cpu_count() or 2) - 1))),
+        _worker(places, "proofs", 1),
         _worker(places, "simulation", 1),
         _gateway(places),
         _estimator(places),

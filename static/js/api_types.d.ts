@@ -4948,6 +4948,11 @@ export interface components {
             gap_of?: components["schemas"]["GapOfEnum"];
             /** @description how it was found; empty: not known */
             method: string;
+            /**
+             * Format: uuid
+             * @description of a stored plan: the job that looks for a better one; null or not there: none has yet
+             */
+            proof?: string | null;
             /** @description null where nothing is locked */
             wish: components["schemas"]["Wish"] | null;
             objective: components["schemas"]["ObjectiveEnum"];
@@ -5518,6 +5523,11 @@ export interface components {
             gap_of?: components["schemas"]["GapOfEnum"];
             /** @description how it was found; empty: not known */
             method: string;
+            /**
+             * Format: uuid
+             * @description of a stored plan: the job that looks for a better one; null or not there: none has yet
+             */
+            proof?: string | null;
             /** @description null where nothing is locked */
             wish: components["schemas"]["Wish"] | null;
         };

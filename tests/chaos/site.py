@@ -29,7 +29,8 @@ DEMO = (
 )
 TIMEOUT_S = 300.0
 ONLY_WEB = dict.fromkeys(
-    ("worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0
+    ("worker-data", "worker-flight", "worker-planning", "worker-proofs", "worker-simulation", "gateway", "estimator", "simulator", "beat"),
+    0,
 )
 KEEPS = "SPANWISE_CHAOS_KEEPS"  # set: logs and data stay for whoever looks for a reason
 

@@ -23,7 +23,7 @@ def test_every_name_becomes_a_command(name: str) -> None:
 
 
 def test_each_worker_takes_its_own_queue() -> None:
-    for queue in ("data", "flight", "planning", "simulation"):
+    for queue in ("data", "flight", "planning", "proofs", "simulation"):
         command = container.PROGRAMS[f"worker-{queue}"]()
         assert command[command.index("--queues") + 1] == queue
 

@@ -12,7 +12,7 @@ from redis.exceptions import RedisError
 
 from deploy.load.usage import families
 
-QUEUES = ("data", "flight", "planning", "simulation")
+QUEUES = ("data", "flight", "planning", "proofs", "simulation")
 KIB = 1_024
 
 

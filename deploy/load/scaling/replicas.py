@@ -16,6 +16,7 @@ KINDS = (
     "worker-data",
     "worker-flight",
     "worker-planning",
+    "worker-proofs",
     "worker-simulation",
     "gateway",
     "estimator",

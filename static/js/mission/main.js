@@ -73,6 +73,7 @@ const BEGINNING = {
   restoredBasis: null,
   figures: {},
   uavNumbers: null,
+  proof: null,
   planning: null,
   saving: false,
   problem: null,

@@ -415,6 +415,24 @@ export interface UavNumbers {
   fault: string;
 }
 
+/** The proof of the stored plan, which goes on in the background. */
+export interface PlanProof {
+  /** id */
+  mission: string;
+  /** of the plan */
+  basis: string;
+  /** of the plan as it is stored */
+  planned_at: string;
+  job: string | null;
+  isStopping: boolean;
+  isOver: boolean;
+  best: BestSoFar | null;
+  /** a better plan than the one on the page */
+  better: PlanResult | null;
+  /** what is better in it */
+  words: string;
+}
+
 /** What the page knows: the state of its store. */
 export interface MissionPageState {
   ground: Ground | null;
@@ -452,6 +470,7 @@ export interface MissionPageState {
   /** by basis: why that could not be planned */
   refusedBeside: Record<string, string>;
   uavNumbers: UavNumbers | null;
+  proof: PlanProof | null;
   why: Why | null;
   /** where the pointer is on a strip or a profile */
   along: { sequence: number; at_m: number; isWished: boolean } | null;

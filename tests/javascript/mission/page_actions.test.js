@@ -23,7 +23,7 @@ globalThis.WebSocket = undefined; // jobs are asked for
 const { createActions } = await import("../../../static/js/mission/actions/actions.js");
 const { howFarWords } = await import("../../../static/js/mission/panels/foot.js");
 const { isWorse } = await import("../../../static/js/mission/plan/compare.js");
-const { planOf } = await import("../../../static/js/mission/actions/plan_results.js");
+const { planOf } = await import("../../../static/js/mission/plan/plan_results.js");
 const { refusalOf } = await import("../../../static/js/mission/actions/refusals.js");
 const { savedWords } = await import("../../../static/js/mission/panels/saved_state.js");
 

@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { isAlike, merged, wordsOfChange } from "../../../static/js/mission/actions/merge.js";
-import { planOf } from "../../../static/js/mission/actions/plan_results.js";
 import { createRunningJob } from "../../../static/js/mission/actions/running_job.js";
 import { changedParts } from "../../../static/js/mission/actions/save_request.js";
 import { bestWordsOf, qualityOf, wishWordsOf } from "../../../static/js/mission/plan/plan_quality.js";
+import { planOf } from "../../../static/js/mission/plan/plan_results.js";
 import { endingOf, isPlanInSight, placesOf, shownPlaces } from "../../../static/js/mission/plan/plan_view.js";
 import {
   EMPTY,

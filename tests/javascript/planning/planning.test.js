@@ -1,6 +1,5 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { withResult } from "../../../static/js/mission/actions/plan_results.js";
 import { partsOf } from "../../../static/js/mission/panels/why/route.js";
 import { fullUavs, reasonWords } from "../../../static/js/mission/panels/why/target.js";
 import {
@@ -12,6 +11,7 @@ import {
   profileOfSummary,
   summaryOfPlan,
 } from "../../../static/js/mission/plan/compare.js";
+import { withResult } from "../../../static/js/mission/plan/plan_results.js";
 import {
   bandOf,
   flightOf,

@@ -3,10 +3,10 @@
 import { follow, get, isAbort, post } from "../../api.js";
 import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
+import { withResult } from "../plan/plan_results.js";
 import { isWithoutCapacity, OBJECTIVES, otherObjective } from "../plan/plan_view.js";
 import * as picks from "../selection.js";
 import { canCompareNumbers, keyOfNumbers, numberOf, withCandidates, withFewer } from "../uavs/uav_numbers.js";
-import { withResult } from "./plan_results.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { JobLink, JobPage } from "../../api_types.d.ts" */

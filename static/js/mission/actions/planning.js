@@ -7,10 +7,11 @@ import { t, tn } from "../../text.js";
 import { lackingOf } from "../flying/next_act.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "../plan/compare.js";
 import { qualityOf, wishWordsOf } from "../plan/plan_quality.js";
+import { planOf, withResult } from "../plan/plan_results.js";
 import { figuresOf, isPlanCurrent, sentenceOf, unassignedOf } from "../plan/plan_view.js";
 import * as picks from "../selection.js";
 import { cancelJob, createPlanBeside, createUavNumbers, MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
-import { planOf, withResult } from "./plan_results.js";
+import { createProof } from "./proof.js";
 import { replanSmallChanges } from "./replanning.js";
 
 /** @import { Answer } from "../../api.js" */
@@ -25,7 +26,7 @@ export function createPlanning(context) {
   const { store, selection, change } = context;
   const aside = createPlanBeside(store);
   const waitForJob = createWaiting(context);
-  const { plan, resume } = createSearch(context, aside, waitForJob);
+  const { plan, resume, show } = createSearch(context, aside, waitForJob);
   showKnownPlans(context, aside);
   rememberLastPlan(context);
   replanSmallChanges(context, plan);
@@ -39,6 +40,7 @@ export function createPlanning(context) {
     resume,
     ...numbers,
     ...createStopping(context),
+    ...createProof(context, show),
     waitForJob,
     makeRoom: aside.giveWay,
     planAlternatives: () => {
@@ -173,7 +175,7 @@ function createSearch(context, aside, waitForJob) {
     });
   }
 
-  return { plan, resume };
+  return { plan, resume, show };
 }
 
 /**

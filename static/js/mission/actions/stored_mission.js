@@ -1,7 +1,7 @@
 /** The stored mission on the page: the server's version, below the changes made here since. */
 
+import { planOf, withResult } from "../plan/plan_results.js";
 import * as picks from "../selection.js";
-import { planOf, withResult } from "./plan_results.js";
 
 /** @import { Mission } from "../../api_types.d.ts" */
 /** @import { MissionContext, MissionSelection, Problem, ShownPlan, Version } from "../types.d.ts" */

@@ -1,9 +1,9 @@
 /** Above the strips: the quality of the plan, separation of its UAVs, the cost of locks, and the way back. */
 
-import { byId, h, icon, setChildren } from "../../../dom.js";
+import { byId, h, icon, keepingFocus, setChildren } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { checkStateOf, checkText } from "../../options/lost_link.js";
-import { qualityOf, wishWordsOf } from "../../plan/plan_quality.js";
+import { bestWordsOf, qualityOf, wishWordsOf } from "../../plan/plan_quality.js";
 import { isPlanCurrent } from "../../plan/plan_view.js";
 import { separationOf } from "../../plan/route_times.js";
 
@@ -27,32 +27,62 @@ export function drawQuality(state, plan, { canPlan, actions }) {
   const linkState = checkStateOf(state.selection.lost_link, plan, isCurrent);
   const isLost = linkState === "lost";
   const place = byId("plan-quality");
-  place.hidden = !quality && !locked && !separation && !isLost;
-  setChildren(
-    place,
-    quality &&
-      bound(quality.isProven ? "circle-check" : "info", false, h("strong", {}, quality.words), " ", quality.detail),
-    separation && bound(separation.isFault ? "triangle-alert" : "replace", separation.isFault, separation.words),
-    isLost &&
-      bound(
-        "triangle-alert",
-        true,
-        t("On link loss:"),
-        " ",
-        checkText(linkState, plan),
-        h("button", { type: "button", class: "text-button", onclick: showLostLink }, t("Show")),
-      ),
-    locked > 0 &&
-      h(
-        "span",
-        { class: "plan-wish" },
-        icon("lock", "small"),
-        h("span", {}, isCurrent ? wishWordsOf(plan.result) : t("Change not planned yet.")),
-        canPlan && [
-          !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),
-          h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),
-        ],
-      ),
+  const proof = isCurrent ? proofOf(state, actions) : null;
+  place.hidden = !quality && !locked && !separation && !isLost && !proof;
+  keepingFocus(place, () =>
+    setChildren(
+      place,
+      quality &&
+        bound(quality.isProven ? "circle-check" : "info", false, h("strong", {}, quality.words), " ", quality.detail),
+      proof,
+      separation && bound(separation.isFault ? "triangle-alert" : "replace", separation.isFault, separation.words),
+      isLost &&
+        bound(
+          "triangle-alert",
+          true,
+          t("On link loss:"),
+          " ",
+          checkText(linkState, plan),
+          h("button", { type: "button", class: "text-button", onclick: showLostLink }, t("Show")),
+        ),
+      locked > 0 &&
+        h(
+          "span",
+          { class: "plan-wish" },
+          icon("lock", "small"),
+          h("span", {}, isCurrent ? wishWordsOf(plan.result) : t("Change not planned yet.")),
+          canPlan && [
+            !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),
+            h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),
+          ],
+        ),
+    ),
+  );
+}
+
+/**
+ * That a better plan is looked for, or was found; null where the plan stays as it is.
+ *
+ * @param {MissionPageState} state
+ * @param {MissionActions} actions
+ */
+function proofOf({ proof }, actions) {
+  if (proof?.better)
+    return bound(
+      "circle-check",
+      false,
+      t("A better plan was found: {difference}.", { difference: proof.words }),
+      " ",
+      h("button", { type: "button", class: "text-button", onclick: actions.showBetterPlan }, t("Show it")),
+    );
+  if (!proof?.job || proof.isOver || proof.isStopping) return null;
+  const best = bestWordsOf(proof.best);
+  return bound(
+    "search",
+    false,
+    best ? t("Looking for a better plan: {best}", { best }) : t("Looking for a better plan …"),
+    " ",
+    h("button", { type: "button", class: "text-button", onclick: actions.stopProof }, t("Stop")),
   );
 }
 

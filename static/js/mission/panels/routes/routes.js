@@ -97,6 +97,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
 
   listenToComparing(store, actions, canPlan);
   store.listen(["plan", "selection", "lastPlan", "mission"], draw);
+  store.listen(["proof"], (state) => state.plan && drawQuality(state, state.plan, { canPlan, actions }));
   store.listen(["why"], (state) => {
     byId("compare-ways").setAttribute("aria-pressed", String(Boolean(state.why?.alternatives)));
     if (Boolean(state.why?.compare) !== dock.classList.contains("comparing")) draw(state);

@@ -1,0 +1,22 @@
+"""The task of the worker for proofs, which alone imports it, and OR-tools with it: see config/settings.py and scripts/commands.py."""
+
+from celery import shared_task
+from django.conf import settings
+
+from missions.services.plan_proofs import prove_for_job
+from missions.tasks import HARD_LIMIT_S, SOFT_LIMIT_S, noted_by, work_on
+from planning.solver.proof import prove
+from workspace.jobs.job_watch import JobWatch
+from workspace.models import Job
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def prove_mission(job_id: str) -> None:
+    """Look for a better plan of a mission, and prove how good its plan is. If stopped, what is known until then is kept."""
+
+    def do(job: Job, watch: JobWatch) -> None:
+        prove_for_job(
+            job=job, prover=prove, stop=watch.stop, on_progress=noted_by(watch), search_s=settings.ROUTING_RULES.large_plan_search_s
+        )
+
+    work_on(job_id, do)
