@@ -7,6 +7,7 @@ plans for some 16 of the targets give better ones.
 This is the only module that imports OR-tools, which takes 60 MB: programs that prove nothing do not import it.
 """
 
+import itertools
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
@@ -31,19 +32,20 @@ LIMITED_TABLE_TARGETS = 15  # where range or battery limit tours beside the obje
 MAX_TABLE_STEPS = 1e10  # pairs of a set and a part of it, some 30 s
 MAX_TABLE_BYTES = 500_000_000
 SUBSET_STEPS = 3e8  # as many pairs for the best plan of a few targets, half a second
+LIMIT_SCALE = 10_000_000  # a range or a battery in CP-SAT's whole numbers
 SCALE = 1_000  # whole numbers of CP-SAT are millimetres, milliseconds and thousandths of a Wh
 POLL_S = 0.1
 CIRCUITS_SHARE = 0.5  # of the time for CP-SAT, where subsets follow
 
-OnFound = Callable[[Routes, float], None]
+OnLook = Callable[[float, Routes, float], None]
 _Found = TypeVar("_Found")
 
 
-def prove(found: BoundedPlan, *, time_s: float, stop: Stop, on_found: OnFound, seed: int) -> Proof | None:
+def prove(found: BoundedPlan, *, time_s: float, stop: Stop, on_look: OnLook, seed: int) -> Proof | None:
     """Return the better of the plan and those found, with the best bound; None where nothing can be said.
 
-    stop is asked ten times a second; on_found is told each better plan and bound. A plan that is proven by CP-SAT is so to a millimetre,
-    a millisecond or a thousandth of a Wh for each leg.
+    stop is asked ten times a second, and on_look told the share of the time, the best plan and the bound. A plan that CP-SAT proves is the
+    best to a millimetre, a millisecond or a thousandth of a Wh for each leg.
     """
     arcs = Arcs.of(found.problem)
     if not found.usable.any() or found.problem.target_count > MAX_TARGETS:
@@ -51,31 +53,43 @@ def prove(found: BoundedPlan, *, time_s: float, stop: Stop, on_found: OnFound, s
     pool = ThreadPoolExecutor(1, "proof")
     try:
         if _has_table(arcs):
-            tables = _result(pool.submit(exact.proven_routes, arcs), stop)
+            tables = _result(pool.submit(exact.proven_routes, arcs), stop, lambda: on_look(0.0, found.routes, found.bound))
             if tables is None:
                 return None
-            best, is_proven = tables
+            routes, is_proven = tables
             if is_proven:
-                return Proof(best, None, EXACT)
-            found = replace(found, routes=min(found.routes, best, key=lambda routes: merit(found.problem, routes)))
+                return Proof(routes, None, EXACT)
+            found = replace(found, routes=min(found.routes, routes, key=lambda one: merit(found.problem, one)))
         subsets_s = time_s * (1.0 - CIRCUITS_SHARE) if arcs.is_makespan else 0.0
-        proof = _Circuits(found, arcs, seed).proof(pool, time_s - subsets_s, stop, on_found)
+        look = _shared(on_look, time_s)
+        proof = _Circuits(found, arcs, seed).proof(pool, time_s - subsets_s, stop, look)
     finally:
         pool.shutdown(wait=False)  # tables that nobody waits for any more end in half a minute at most
     if proof.bound is None or not subsets_s or stop():
         return proof
-    return replace(proof, bound=max(proof.bound, _bound_by_subsets(found, arcs, subsets_s, stop, seed)))
+    best = replace(found, routes=proof.routes, bound=proof.bound)
+    return replace(proof, bound=max(proof.bound, _bound_by_subsets(best, arcs, subsets_s, stop, look, seed)))
 
 
-def _bound_by_subsets(found: BoundedPlan, arcs: Arcs, time_s: float, stop: Stop, seed: int) -> float:
+def _shared(on_look: OnLook, time_s: float) -> Callable[[Routes, float], None]:
+    """Return what is to be called every POLL_S; it counts the share of the time."""
+    looks = itertools.count(1)
+    return lambda routes, bound: on_look(min(1.0, next(looks) * POLL_S / time_s) if time_s else 1.0, routes, bound)
+
+
+def _bound_by_subsets(found: BoundedPlan, arcs: Arcs, time_s: float, stop: Stop, look: Callable[[Routes, float], None], seed: int) -> float:
     is_over = Event()
     timer = Timer(time_s, is_over.set)
     timer.start()
-    subsets = Subsets(_subset_targets(arcs), trials=1_000_000, stop=lambda: is_over.is_set() or stop())
-    try:
-        return lower_bound(found.problem, found.usable, found.needed_m, found.routes, seed=seed, subsets=subsets)
-    finally:
-        timer.cancel()
+    subsets = Subsets(_subset_targets(arcs), trials=1_000_000, stop=is_over.is_set)
+    with ThreadPoolExecutor(1, "subsets") as pool:
+        work = pool.submit(lower_bound, found.problem, found.usable, found.needed_m, found.routes, seed=seed, subsets=subsets)
+        while wait([work], timeout=POLL_S).not_done:
+            look(found.routes, found.bound)
+            if stop():
+                is_over.set()
+    timer.cancel()
+    return work.result()
 
 
 def _has_table(arcs: Arcs) -> bool:
@@ -96,9 +110,10 @@ def _subset_targets(arcs: Arcs) -> int:
     return max(targets for targets in range(4, most + 1) if targets == 4 or 3**targets * rows <= SUBSET_STEPS)
 
 
-def _result(work: Future[_Found], stop: Stop) -> _Found | None:
+def _result(work: Future[_Found], stop: Stop, look: Callable[[], None]) -> _Found | None:
     """Return what the work gives; None once it is stopped, though it goes on."""
     while wait([work], timeout=POLL_S).not_done:
+        look()
         if stop():
             return None
     return work.result()
@@ -129,20 +144,20 @@ class _Circuits:
         self._missing = self._add_targets()
         self._value = self._add_value()
 
-    def proof(self, pool: ThreadPoolExecutor, time_s: float, stop: Stop, on_found: OnFound) -> Proof:
+    def proof(self, pool: ThreadPoolExecutor, time_s: float, stop: Stop, look: Callable[[Routes, float], None]) -> Proof:
         """Return the proof after so many seconds at most."""
         is_whole = True
         if self._missing is not None:  # first as few targets left out as possible
             time_s /= 2.0
             self._model.minimize(self._missing)
-            status, least = self._solve(pool, time_s, stop, lambda routes, bound: on_found(routes, self._bound))
+            status, least = self._solve(pool, time_s, stop, lambda bound: look(self._routes, self._bound))
             is_whole = status == cp_model.OPTIMAL
             missed = merit(self._problem, self._routes)[0]
             self._model.add(self._missing <= round(missed))
             if least is None or stop():
                 return Proof(self._routes, self._bound, CP_SAT)
         self._model.minimize(self._value)
-        status, least = self._solve(pool, time_s, stop, on_found)
+        status, least = self._solve(pool, time_s, stop, lambda bound: look(self._routes, max(self._bound, bound / SCALE - self._slack)))
         value, slack = self._problem.value(self._routes), self._slack
         if least is None:
             return Proof(self._routes, self._bound, CP_SAT)
@@ -156,8 +171,8 @@ class _Circuits:
         """What the rounding of all legs of a plan can amount to, in the objective's unit."""
         return (len(self._arcs.weight) + 2 * len(self._rows)) / SCALE
 
-    def _solve(self, pool: ThreadPoolExecutor, time_s: float, stop: Stop, on_found: OnFound) -> tuple[int, float | None]:
-        """Return CP-SAT's status and bound; None without a bound. Better plans replace the one it begins with."""
+    def _solve(self, pool: ThreadPoolExecutor, time_s: float, stop: Stop, look: Callable[[float], None]) -> tuple[int, float | None]:
+        """Return CP-SAT's status and bound; None without a bound. Better plans replace the one it begins with; look is told the bound."""
         solver = cp_model.CpSolver()
         parameters = solver.parameters
         parameters.max_time_in_seconds = time_s
@@ -165,36 +180,29 @@ class _Circuits:
         parameters.linearization_level = 2  # with the cuts of circuits: totals are proven 10 to 50 times as fast
         parameters.random_seed = self._seed
         self._hint()
-        known = self._bound
-
-        def on_bound(bound: float) -> None:
-            nonlocal known
-            known = max(known, bound / SCALE - self._slack)
-            on_found(self._routes, known)
-
-        solver.best_bound_callback = on_bound
-        work = pool.submit(solver.solve, self._model, _Watch(lambda value_of: self._take(self._read(value_of), known, on_found)))
+        bounds = [0.0]
+        solver.best_bound_callback = bounds.append
+        work = pool.submit(solver.solve, self._model, _Watch(lambda value_of: self._take(self._read(value_of))))
         while wait([work], timeout=POLL_S).not_done:
+            look(bounds[-1])
             if stop():
                 solver.stop_search()
         status = work.result()
         return int(status), solver.best_objective_bound if status in (cp_model.OPTIMAL, cp_model.FEASIBLE) else None
 
-    def _take(self, routes: Routes, bound: float, on_found: OnFound) -> None:
+    def _take(self, routes: Routes) -> None:
         """Keep the plan if it is better: its limits are checked again, those of the model are rounded."""
         problem = self._problem
         is_possible = all(problem.keeps_limits(row, route) for row, route in enumerate(routes) if route)
         if is_possible and merit(problem, routes) < merit(problem, self._routes):
             self._routes = routes
-            on_found(routes, bound)
 
     # --- the model ---------------------------------------------------------------------------------------------------------------
 
     def _add_row(self, row: int) -> None:
         arcs, model = self._arcs, self._model
         onward_m = arcs.onward_m[arcs.class_of[row]]
-        visits = np.flatnonzero(self._usable[row] & (arcs.first_m[row] < NO_PATH_M)).tolist()
-        visits += [visit for visit in np.flatnonzero(self._usable[row]).tolist() if visit not in visits]
+        visits = np.flatnonzero(self._usable[row]).tolist()
         is_idle = model.new_bool_var("")
         own = [_Arc(0, 0, is_idle)]
         for visit in visits:
@@ -214,10 +222,10 @@ class _Circuits:
         self._is_idle.append(is_idle)
         if row and arcs.owner[row] == arcs.owner[row - 1]:  # a later flight, only after an earlier one
             model.add_implication(self._is_idle[row - 1], is_idle)
-        self._add_limits(row, visits)
+        self._add_limits(row)
         self._values.append(self._value_of_row(row))
 
-    def _add_limits(self, row: int, visits: Sequence[int]) -> None:
+    def _add_limits(self, row: int) -> None:
         """Rounded down, so that no plan that keeps the limits is excluded."""
         arcs, of_class = self._arcs, self._arcs.class_of[row]
         limited = [(arcs.first_m[row], arcs.onward_m[of_class], arcs.end_m[row], float(arcs.limit_m[row]))]
@@ -228,8 +236,9 @@ class _Circuits:
         ]
         for first, onward, end, limit in limited:
             if limit < NO_LIMIT:
-                taken = [(arc.literal, int(_amount(arc, first, onward, end) * SCALE)) for arc in self._rows[row] if arc.begin != arc.end]
-                self._model.add(_sum(taken) <= int(limit * SCALE) + 1)
+                scale = LIMIT_SCALE / max(limit, 1.0)
+                taken = [(arc.literal, int(_amount(arc, first, onward, end) * scale)) for arc in self._rows[row] if arc.begin != arc.end]
+                self._model.add(_sum(taken) <= int(limit * scale) + 1)
         if arcs.most[row] < len(arcs.weight) or (arcs.done > 1).any():
             self._model.add(
                 _sum([(arc.literal, int(arcs.done[arc.end - 1])) for arc in self._rows[row] if arc.end and arc.begin != arc.end])

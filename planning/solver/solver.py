@@ -21,6 +21,7 @@ PIECES_SHARE = 0.4  # of the time of a search
 EXACT, SEARCH = "exact", "ruin and recreate"  # what Solution.method says
 
 PROOF_TO_SEARCH = 6  # a proof takes as many times as long as the search before it
+SEARCH_SHARE = 1 / (1 + PROOF_TO_SEARCH)  # of the time of both
 
 Stop = Callable[[], bool]
 
@@ -54,7 +55,7 @@ class Prover(Protocol):
     """Looks for a better plan and a better bound. `proof.prove` loads a large library: only programs that prove something import it."""
 
     def __call__(
-        self, found: BoundedPlan, *, time_s: float, stop: Stop, on_found: Callable[[Routes, float], None], seed: int
+        self, found: BoundedPlan, *, time_s: float, stop: Stop, on_look: Callable[[float, Routes, float], None], seed: int
     ) -> Proof | None: ...
 
 
@@ -142,14 +143,15 @@ def _solved(
         return routes, reasons(problem, needed_m, routes), None, EXACT
     chains = chains_of(problem)
     pieces = _coarse_problems(problem, chains)
+    on_search = on_progress if prover is None else _until(SEARCH_SHARE, on_progress)
     searched_s = search_s * PIECES_SHARE * sum(map(_is_searched, pieces)) / len(PIECES)
-    start = _plan_of_pieces(pieces, stop=stop, on_progress=on_progress, seed=seed, search_s=searched_s)
+    start = _plan_of_pieces(pieces, stop=stop, on_progress=on_search, seed=seed, search_s=searched_s)
     found = searched_plan(
         problem,
         usable,
         needed_m,
         stop=stop,
-        on_progress=_from(PIECES_SHARE, on_progress) if pieces else on_progress,
+        on_progress=_from(PIECES_SHARE, on_search) if pieces else on_search,
         seed=seed,
         search_s=search_s - searched_s,
         start=start,
@@ -167,10 +169,11 @@ def _proven(
     if prover is None or found.is_proven or stop():
         return plan
 
-    def on_found(routes: Routes, bound: float) -> None:
-        on_progress(Progress(0.99, progress_message(found.problem, routes), routes, bound))
+    def on_look(share: float, routes: Routes, bound: float) -> None:
+        over = SEARCH_SHARE + (1.0 - SEARCH_SHARE) * share
+        on_progress(Progress(min(over, 0.99), progress_message(found.problem, routes), routes, bound))
 
-    return prover(found, time_s=PROOF_TO_SEARCH * search_s, stop=stop, on_found=on_found, seed=seed) or plan
+    return prover(found, time_s=PROOF_TO_SEARCH * search_s, stop=stop, on_look=on_look, seed=seed) or plan
 
 
 def _coarse_problems(problem: Problem, chains: Sequence[Chain]) -> list[Reduced]:
@@ -219,6 +222,11 @@ def _plan_of_pieces(pieces: Sequence[Reduced], *, stop: Stop, on_progress: OnPro
         )
         routes = coarse.expanded(found.routes)
     return routes
+
+
+def _until(end: float, on_progress: OnProgress) -> OnProgress:
+    """Return what tells of a search after which more follows."""
+    return lambda told: on_progress(replace(told, share=end * told.share))
 
 
 def _from(begin: float, on_progress: OnProgress) -> OnProgress:

@@ -426,7 +426,8 @@ export interface PlanProof {
   job: string | null;
   isStopping: boolean;
   isOver: boolean;
-  best: BestSoFar | null;
+  /** share, 0 to 1 */
+  progress: number;
   /** a better plan than the one on the page */
   better: PlanResult | null;
   /** what is better in it */

@@ -29,7 +29,7 @@ def bounded(problem: Problem, routes: Routes = (), bound: float = 0.0) -> Bounde
 
 
 def proven(problem: Problem, routes: Routes = (), *, time_s: float = 20.0, stop: Callable[[], bool] = never) -> Proof | None:
-    return proof.prove(bounded(problem, routes), time_s=time_s, stop=stop, on_found=lambda routes, bound: None, seed=7)
+    return proof.prove(bounded(problem, routes), time_s=time_s, stop=stop, on_look=lambda share, routes, bound: None, seed=7)
 
 
 @pytest.fixture
@@ -119,7 +119,7 @@ def test_the_bound_of_the_longest_route_comes_from_the_best_plans_for_some_targe
     searched = solve(problem)
     assert not searched.is_proven
     found = proof.prove(
-        bounded(problem, searched.routes, searched.lower_bound), time_s=4.0, stop=never, on_found=lambda routes, bound: None, seed=7
+        bounded(problem, searched.routes, searched.lower_bound), time_s=4.0, stop=never, on_look=lambda share, routes, bound: None, seed=7
     )
     assert found is not None and problem.value(found.routes) <= searched.longest_s
     assert found.bound is None or searched.lower_bound <= found.bound <= problem.value(found.routes)

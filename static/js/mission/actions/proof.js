@@ -4,20 +4,20 @@ import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
 import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { differenceWords, isWorse } from "../plan/compare.js";
+import { differences, isWorse } from "../plan/compare.js";
 import { planOf, withResult } from "../plan/plan_results.js";
 import { isPlanCurrent } from "../plan/plan_view.js";
 import { cancelJob } from "./plan_beside.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { JobLink, Mission } from "../../api_types.d.ts" */
-/** @import { BestSoFar, MissionContext, MissionPageState, MissionStore, PlanProof, PlanResult, ShownPlan } from "../types.d.ts" */
+/** @import { MissionContext, MissionPageState, MissionStore, PlanProof, PlanResult, ShownPlan } from "../types.d.ts" */
 
 const MAX_PROVEN_TARGETS = 40;
 const SEARCHED = "ruin and recreate"; // the method of plans that a proof can better: of others it knows as much already
 
 /** @type {Omit<PlanProof, "mission" | "basis" | "planned_at">} */
-const BEGINNING = { job: null, isStopping: false, isOver: false, best: null, better: null, words: "" };
+const BEGINNING = { job: null, isStopping: false, isOver: false, progress: 0, better: null, words: "" };
 
 /**
  * Whether a proof can say more of the plan on the page: stored, searched, and neither proven nor about to change.
@@ -60,7 +60,7 @@ function learn(store, known) {
 }
 
 /**
- * What is better in the plan that a proof has found; empty where it is no better than the one on the page.
+ * What is better in the plan that a proof has found; empty where it is no better than the one on the page, or by metres and seconds alone.
  *
  * @param {Readonly<MissionPageState>} state
  * @param {PlanProof} now
@@ -68,7 +68,7 @@ function learn(store, known) {
  */
 function betterWords({ plan, selection }, now, found) {
   if (!plan || plan.basis !== now.basis || !isWorse(plan, planOf(found, selection))) return "";
-  return differenceWords(plan.result, found);
+  return differences(plan.result, found).join(", ");
 }
 
 /**
@@ -98,7 +98,7 @@ export function createProof({ store, page }, show) {
       put(now, { job: data.job });
       const ended = await followLive(data.job, {
         signal: own.signal,
-        onProgress: ({ best }) => put(now, { best: /** @type {BestSoFar | null} */ (best) }),
+        onProgress: ({ progress }) => put(now, { progress }),
       });
       const { data: stored } = /** @type {Answer<Mission>} */ (
         await get(`/missions/${mission}`, { signal: own.signal })

@@ -213,18 +213,25 @@ export function moreOrLess(difference, least, textOf) {
   return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
 }
 
+/** @typedef {Pick<Plan, "routes" | "total_length_m" | "unassigned">} Compared */
+
 /**
  * "+3 min, −1.1 km, 1 target fewer": a plan against the one before.
  *
- * @param {Pick<Plan, "routes" | "total_length_m" | "unassigned">} before
- * @param {Pick<Plan, "routes" | "total_length_m" | "unassigned">} after
+ * @param {Compared} before
+ * @param {Compared} after
  */
-export function differenceWords(before, after) {
+export const differenceWords = (before, after) =>
+  differences(before, after).join(", ") || t("as long and as far as before");
+
+/** What differs in more than seconds and metres. @param {Compared} before @param {Compared} after */
+export function differences(before, after) {
   const missed = after.unassigned.length - before.unassigned.length;
   const parts = [
     moreOrLess(longestDuration_s(after) - longestDuration_s(before), 30, durationText),
     moreOrLess(after.total_length_m - before.total_length_m, 50, lengthText),
   ].filter((words) => words !== "=");
   if (missed > 0) parts.push(tn(missed, "{count} more target is not reached", "{count} more targets are not reached"));
-  return parts.join(", ") || t("as long and as far as before");
+  if (missed < 0) parts.push(tn(-missed, "{count} more target is reached", "{count} more targets are reached"));
+  return parts;
 }

@@ -2,8 +2,9 @@
 
 import { byId, h, icon, keepingFocus, setChildren } from "../../../dom.js";
 import { t } from "../../../text.js";
+import { percentText } from "../../../units.js";
 import { checkStateOf, checkText } from "../../options/lost_link.js";
-import { bestWordsOf, qualityOf, wishWordsOf } from "../../plan/plan_quality.js";
+import { qualityOf, wishWordsOf } from "../../plan/plan_quality.js";
 import { isPlanCurrent } from "../../plan/plan_view.js";
 import { separationOf } from "../../plan/route_times.js";
 
@@ -76,11 +77,10 @@ function proofOf({ proof }, actions) {
       h("button", { type: "button", class: "text-button", onclick: actions.showBetterPlan }, t("Show it")),
     );
   if (!proof?.job || proof.isOver || proof.isStopping) return null;
-  const best = bestWordsOf(proof.best);
   return bound(
     "search",
     false,
-    best ? t("Looking for a better plan: {best}", { best }) : t("Looking for a better plan …"),
+    t("Looking for a better plan … {percent}", { percent: percentText(proof.progress * 100) }),
     " ",
     h("button", { type: "button", class: "text-button", onclick: actions.stopProof }, t("Stop")),
   );
