@@ -98,7 +98,8 @@ export function createProof({ store, page }, show) {
       put(now, { job: data.job });
       const ended = await followLive(data.job, {
         signal: own.signal,
-        onProgress: ({ progress }) => put(now, { progress }),
+        // several plans are looked for in turn, and the server tells the progress of each
+        onProgress: ({ progress }) => put(now, { progress: Math.max(progress, store.state.proof?.progress ?? 0) }),
       });
       const { data: stored } = /** @type {Answer<Mission>} */ (
         await get(`/missions/${mission}`, { signal: own.signal })

@@ -28,7 +28,7 @@ export function drawQuality(state, plan, { canPlan, actions }) {
   const linkState = checkStateOf(state.selection.lost_link, plan, isCurrent);
   const isLost = linkState === "lost";
   const place = byId("plan-quality");
-  const proof = isCurrent ? proofOf(state, actions) : null;
+  const proof = isCurrent ? proofOf(state, plan.result.is_proven, actions) : null;
   place.hidden = !quality && !locked && !separation && !isLost && !proof;
   keepingFocus(place, () =>
     setChildren(
@@ -65,9 +65,10 @@ export function drawQuality(state, plan, { canPlan, actions }) {
  * That a better plan is looked for, or was found; null where the plan stays as it is.
  *
  * @param {MissionPageState} state
+ * @param {boolean} isProven
  * @param {MissionActions} actions
  */
-function proofOf({ proof }, actions) {
+function proofOf({ proof }, isProven, actions) {
   if (proof?.better)
     return bound(
       "circle-check",
@@ -76,7 +77,9 @@ function proofOf({ proof }, actions) {
       " ",
       h("button", { type: "button", class: "text-button", onclick: actions.showBetterPlan }, t("Show it")),
     );
-  if (!proof?.job || proof.isOver || proof.isStopping) return null;
+  if (!proof?.job) return null;
+  if (proof.isOver) return isProven ? null : bound("search", false, t("No better plan was found."));
+  if (proof.isStopping) return null;
   return bound(
     "search",
     false,
