@@ -8,6 +8,7 @@ from typing import Any
 from planning.views.camera import Camera, camera_from_json, camera_to_json
 
 MAX_HOLD_S = 3_600.0
+INSPECTION_SPEEDS_MPS = (0.5, 50.0)  # that may be asked for
 VIEWS_HOLD_S = 3.0  # at each photo of a view plan: until the UAV and its camera stand still, and for the photo
 VIEWS_HOLDS_S = (2.0, 60.0)  # that may be asked for
 TURN_S = 3.0  # longer where the UAV has to turn its nose: half a turn at the usual 60 degrees a second
@@ -62,18 +63,26 @@ class View:
 
 @dataclass(frozen=True)
 class Task:
-    """What is done at a target; the UAV stays `hold_s` seconds, or as long at each photo of `views`. view: of a waypoint's one photo."""
+    """What is done at a target; the UAV stays `hold_s` seconds, or as long at each photo of `views`. view: of a waypoint's one photo.
+
+    speed_mps: over ground along a line, at most; None: as the UAV flies.
+    """
 
     kind: TaskKind
     hold_s: float
     views: ViewsRequest | None = None
     view: View | None = None
+    speed_mps: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.hold_s <= MAX_HOLD_S:
             raise ValueError(f"hold_s must be from 0 to {MAX_HOLD_S:.0f}")
         if self.kind is not TaskKind.PHOTO and (self.views is not None or self.view is not None):
             raise ValueError("only photos have views")
+        if self.speed_mps is not None and not (
+            self.kind is TaskKind.LOOK and INSPECTION_SPEEDS_MPS[0] <= self.speed_mps <= INSPECTION_SPEEDS_MPS[1]
+        ):
+            raise ValueError("only a look along a line has a speed, of 0.5 to 50 m/s")
 
 
 def default_task(asset_kind: str | None, *, is_path: bool) -> Task:
@@ -92,12 +101,14 @@ def default_task(asset_kind: str | None, *, is_path: bool) -> Task:
 
 
 def task_to_json(task: Task) -> dict[str, Any]:
-    """Return kind and hold_s; `views` and `view` where there are any, as documents that are older have neither."""
+    """Return kind and hold_s; `views`, `view` and `speed_mps` where there are any, as documents that are older have none."""
     value: dict[str, Any] = {"kind": task.kind.value, "hold_s": task.hold_s}
     if task.views is not None:
         value["views"] = views_to_json(task.views)
     if task.view is not None:
         value["view"] = vars(task.view).copy()
+    if task.speed_mps is not None:
+        value["speed_mps"] = task.speed_mps
     return value
 
 
@@ -110,6 +121,7 @@ def task_from_json(value: Mapping[str, Any] | None) -> Task | None:
         float(value["hold_s"]),
         None if views is None else views_from_json(views),
         None if view is None else View(**view),
+        value.get("speed_mps"),
     )
 
 

@@ -11,6 +11,7 @@ like: plans not drawn, and plans drawn. With --write the table goes to docs/perf
 
 import argparse
 import io
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
@@ -125,7 +126,7 @@ class Mission:
             self.ways,
             fleet=FlyingFleet([FLYING] * UAVS, [Finish(End.RETURN, lands=True)] * UAVS, self.starts),
             bases=[],
-            visits=FlownVisits(self.courses, [AGL_M] * TARGETS, [HOLD_S] * TARGETS),
+            visits=FlownVisits(self.courses, [AGL_M] * TARGETS, [HOLD_S] * TARGETS, [math.inf] * TARGETS),
             conditions=self.conditions,
             rules=RULES,
         )

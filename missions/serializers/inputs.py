@@ -58,7 +58,7 @@ from planning.energy.performance import (
 )
 from planning.problem import Objective
 from planning.request import GO_ON, EndAction, LostLinkRequest, lost_link_from_json
-from planning.task import DEFAULT_HOLD_S, MAX_HOLD_S, VIEWS_HOLD_S, VIEWS_HOLDS_S, Task, TaskKind
+from planning.task import DEFAULT_HOLD_S, INSPECTION_SPEEDS_MPS, MAX_HOLD_S, VIEWS_HOLD_S, VIEWS_HOLDS_S, Task, TaskKind
 from workspace.api import strict_serializers as serializers
 from workspace.api.external_data import AttributesField, ExternalIdField
 from workspace.api.fields import FiniteFloatField
@@ -71,8 +71,17 @@ class TaskSerializer(KnownFieldsSerializer):
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
     views = ViewsInputSerializer(required=False, allow_null=True, help_text="with photo, of a power tower: photos from planned poses")
+    speed_mps = FiniteFloatField(
+        min_value=INSPECTION_SPEEDS_MPS[0],
+        max_value=INSPECTION_SPEEDS_MPS[1],
+        required=False,
+        allow_null=True,
+        help_text="with look, of a line or railway that is flown along: over ground at most; null: as the UAV flies",
+    )
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if attrs.get("speed_mps") is not None and attrs["kind"] != TaskKind.LOOK:
+            raise serializers.ValidationError({"speed_mps": _("Only a look along a line has a speed.")})
         if attrs.get("views") and attrs["kind"] != TaskKind.PHOTO:
             raise serializers.ValidationError({"views": _("Only photos have views.")})
         low_s, high_s = VIEWS_HOLDS_S
@@ -180,6 +189,8 @@ class TargetInputSerializer(KnownFieldsSerializer):
         if attrs.get("stretch") and (attrs.get("asset") is None or attrs.get("position") is not None):
             raise serializers.ValidationError({"stretch": _("A stretch needs an asset and no position.")})
         views = (attrs.get("task") or {}).get("views")
+        if (attrs.get("task") or {}).get("speed_mps") is not None and (attrs.get("asset") is None or attrs.get("position") is not None):
+            raise serializers.ValidationError({"task": _("Only a look along a line has a speed.")})
         if views and (attrs.get("asset") is None or attrs.get("stretch")):
             raise serializers.ValidationError({"task": _("Photos are planned of power towers that carry a line.")})
         if views and (attrs.get("sensor") or "").strip().casefold() not in {"", views["camera"].name.strip().casefold()}:
@@ -362,7 +373,7 @@ def _target_request(target: dict[str, Any]) -> TargetRequest:
 def _task(value: dict[str, Any]) -> Task:
     kind, views = TaskKind(value["kind"]), value.get("views")
     hold_s = value.get("hold_s", VIEWS_HOLD_S if views else DEFAULT_HOLD_S[kind])
-    return Task(kind, hold_s, views_request(views) if views else None)
+    return Task(kind, hold_s, views_request(views) if views else None, speed_mps=value.get("speed_mps"))
 
 
 class PlanInputSerializer(OptionsSerializer):

@@ -25,6 +25,7 @@ class TaskOutputSerializer(serializers.Serializer):
     hold_s = serializers.FloatField()
     views = ViewsSerializer(required=False, help_text="of a target that is photographed from planned poses")
     view = ViewSerializer(required=False, help_text="of a waypoint at which one of these photos is taken")
+    speed_mps = serializers.FloatField(required=False, help_text="along a line or railway, over ground at most")
 
 
 class WaypointSerializer(serializers.Serializer):

@@ -1,5 +1,6 @@
 """A request in one airspace: its targets as visits, the paths between all of them, and what flying these takes."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -53,10 +54,11 @@ def visits_of_targets(
 
 
 def needs_flight_costs(request: PlanRequest) -> bool:
-    """Whether wind, a battery, a limit of airspeed or the objective make metres not enough to plan by."""
+    """Whether wind, a battery, a limit of airspeed, an inspection speed or the objective make metres not enough to plan by."""
     return (
         not request.conditions.is_calm
         or request.objective in _COUNTED
+        or any(target.task is not None and target.task.speed_mps is not None for target in request.targets)
         or any(uav.performance.battery_wh is not None or uav.performance.max_airspeed_mps is not None for uav in request.uavs)
     )
 
@@ -80,6 +82,7 @@ def costs_of_flying(routing: RoutingInput, uavs: Sequence[int]) -> FlightCosts:
             routing.courses,
             [routing.agl_m[visit.target] for visit in routing.visits],
             [routing.targets[visit.target].stays_s for visit in routing.visits],
+            [routing.targets[visit.target].task.speed_mps or math.inf for visit in routing.visits],
         ),
         conditions=request.conditions,
         rules=airspace.flight,

@@ -20,7 +20,7 @@ from inspection.network.paths.contracted_graph import ContractedGraph
 from inspection.network.paths.paths import PathEnds
 from planning.connection_points import TargetPaths
 from planning.energy.conditions import Conditions, air_density
-from planning.energy.leg_cost import J_PER_WH, Air, landing_taken, leg_taken, stay_taken, take_off_taken
+from planning.energy.leg_cost import J_PER_WH, Air, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
 from planning.energy.path_cost import Bends, FlightClass, GraphTaken, NodeGround, bends_of_paths, graph_taken, taken_on_paths
 from planning.problem import End
 from planning.rules import FlightRules
@@ -77,11 +77,12 @@ class FlyingFleet:
 
 @dataclass(frozen=True)
 class FlownVisits:
-    """Of each visit: its course, the height above ground, and how long the UAV stays."""
+    """Of each visit: its course, the height above ground, how long the UAV stays, and how fast it flies along at most (inf: any speed)."""
 
     courses: Sequence[Sequence[LonLat]]
     agl_m: Sequence[float]
     hold_s: Sequence[float]
+    most_mps: Sequence[float]
 
 
 def flight_costs(
@@ -107,7 +108,7 @@ def flight_costs(
     course_first = np.array([0, *accumulate(map(len, visits.courses))], dtype=np.int64)
     begins = np.array(fleet.starts, dtype=np.float64).reshape(-1, 2)
     stands = np.array([*(fleet.starts if fleet.homes is None else fleet.homes), *bases], dtype=np.float64).reshape(-1, 2)
-    flown = np.array([visits.agl_m, visits.hold_s], dtype=np.float64)
+    flown = np.array([visits.agl_m, visits.hold_s, visits.most_mps], dtype=np.float64)
     ends = np.array([(_ENDS[finish.end], finish.lands) for finish in fleet.finishes], dtype=np.int64).reshape(-1, 2)
     source_m, sink_m = (_NOT_KNOWN, _NOT_KNOWN) if ground is None else (ground.source_m, ground.sink_m)
     terms = _Terms(
@@ -137,7 +138,10 @@ TAKE_OFF, LANDING = range(2)
 
 
 class _Visits(NamedTuple):
-    """The visits' courses one after another, lon, lat [deg], and where each begins; height and hold of each, (2, v); transit height."""
+    """The visits' courses one after another, lon, lat [deg], and where each begins; transit height.
+
+    flown (3, v): height, hold, and greatest speed along each.
+    """
 
     course: FloatArray
     course_first: IntArray
@@ -229,6 +233,14 @@ def _sources_and_sinks(terms: _Terms) -> tuple[FloatArray, FloatArray]:
 
 
 @njit(cache=True, nogil=True)
+def _at_speed(air: Air, cruise_mps: float) -> Air:
+    """The same, flown more slowly."""
+    own = air.own
+    slower = Speeds(cruise_mps, own.limit_mps, own.climb_mps, own.descent_mps, own.brake_s, own.settle_s, own.lift_s, own.touch_s)
+    return Air(air.wind, air.temperature_c, slower, air.table)
+
+
+@njit(cache=True, nogil=True)
 def _at_visits(of_visits: _Visits, ground_m: FloatArray, air: Air) -> tuple[FloatArray, FloatArray]:
     """Seconds and Wh of each visit's parts, (2, 4, v), and of take-off to transit height and landing from there, (2, 2).
 
@@ -244,11 +256,12 @@ def _at_visits(of_visits: _Visits, ground_m: FloatArray, air: Air) -> tuple[Floa
         known_m = ground_m[uavs + visit]
         density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, air.temperature_c)
         parts[0, SERVICE, visit], parts[1, SERVICE, visit] = stay_taken(flown[1, visit], level_m, density, air)
+        slowed = air if flown[2, visit] >= air.own.cruise_mps else _at_speed(air, flown[2, visit])
         for vertex in range(course_first[visit] + 1, course_first[visit + 1]):
             east, north = short_vector_m(course[vertex - 1, 0], course[vertex - 1, 1], course[vertex, 0], course[vertex, 1])
             length_m = math.hypot(east, north)
             if length_m > 0.0:
-                along = leg_taken(length_m, east / length_m, north / length_m, level_m, level_m, 0.0, density, air)
+                along = leg_taken(length_m, east / length_m, north / length_m, level_m, level_m, 0.0, density, slowed)
                 parts[0, ALONG, visit] += along[0]
                 parts[1, ALONG, visit] += along[1]
         down = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, density, air)

@@ -21,6 +21,7 @@ from planning.plan import PlannedRoute
 from planning.problem import Routes
 from planning.request import BaseRequest, EndAction, InvalidRequest
 from planning.trajectory.heights import pass_agl_m, with_heights
+from planning.trajectory.leg_speeds import inspection_speeds
 from planning.trajectory.obstacles import rising_over
 from planning.trajectory.photo_flights import GroundNotKnown, with_photo_flights
 from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
@@ -148,6 +149,9 @@ class TrajectoryBuilder(RoutingInput):
         except GroundNotKnown as error:
             raise InvalidRequest({f"targets.{error.target}.task": Reason("photos_ground_unknown")}) from error
         length_m += sum(flight.length_m for flight in photos.values())
+        tasks = (self.targets[self.visits[visit].target] for visit in order)
+        speed_of = {target.target: target.task.speed_mps for target in tasks if target.task.speed_mps is not None}
+        flown.points.speed_mps |= inspection_speeds(flown.points.target.tolist(), speed_of, self.request.uavs[uav].cruise_speed_mps)
         return _Flight(flown, length_m, is_flat, blocked)
 
     def _base(self, action: EndAction, order: Sequence[int]) -> BaseRequest | None:

@@ -1,6 +1,7 @@
-"""How fast and how slow a leg can be flown over ground in its wind."""
+"""How fast a leg is flown over ground: as its target asks for, and how fast and how slow it can be in its wind."""
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from inspection.geodesy.local_frame import short_vector_m
@@ -17,6 +18,21 @@ class SpeedRange(NamedTuple):
 
     least_mps: float
     most_mps: float
+
+
+def inspection_speeds(target: Sequence[int | None], speed_of: Mapping[int, float], cruise_speed_mps: float) -> dict[int, float]:
+    """Return the speeds [m/s] of the legs along the stretches of targets, by the waypoint that they lead to.
+
+    target: that of each waypoint, None or below 0 for none; speed_of: the inspection speeds of targets that have one. A UAV that flies
+    slower keeps its own.
+    """
+    found: dict[int, float] = {}
+    for number, speed_mps in speed_of.items():
+        if speed_mps < cruise_speed_mps and number in target:
+            first = target.index(number)
+            last = len(target) - 1 - target[::-1].index(number)
+            found |= dict.fromkeys(range(first + 1, last + 1), speed_mps)
+    return found
 
 
 def speeds_out_of_range(

@@ -80,7 +80,7 @@ def _rehearse_time_and_energy(points: RoutePoints) -> None:
         paths_between(graph, ZoneIndex([], [], []), ends, ends, ends, access),
         fleet=FlyingFleet([FlightClass(performance, 10.0)], [Finish(End.RETURN, lands=True)], [place]),
         bases=[],
-        visits=FlownVisits([[place]], [45.0], [5.0]),
+        visits=FlownVisits([[place]], [45.0], [5.0], [1.0]),
         conditions=conditions,
         rules=rules,
     )

@@ -7812,6 +7812,11 @@ export interface components {
             views?: components["schemas"]["Views"];
             /** @description of a waypoint at which one of these photos is taken */
             view?: components["schemas"]["View"];
+            /**
+             * Format: double
+             * @description along a line or railway, over ground at most
+             */
+            speed_mps?: number;
         };
         /** @description Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold; with `views` 3 s at each photo. */
         TaskRequest: {
@@ -7820,6 +7825,11 @@ export interface components {
             hold_s?: number;
             /** @description with photo, of a power tower: photos from planned poses */
             views?: components["schemas"]["ViewsInputRequest"] | null;
+            /**
+             * Format: double
+             * @description with look, of a line or railway that is flown along: over ground at most; null: as the UAV flies
+             */
+            speed_mps?: number | null;
         };
         /**
          * @description * `flat ground assumed` - flat ground assumed

@@ -1,5 +1,6 @@
 """Which assets can be inspected, by hand and against what the planner itself says of each."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -208,7 +209,7 @@ def needed_wh(graph, zones, one, node, bases, conditions):
     ways = paths_between(graph, zones, [Terminal(one.position)], [target], [target], RULES, [Terminal(base) for base in bases])
     costs = flight_costs(
         graph, ways, fleet=FlyingFleet([one.flying], [Finish(one.end, one.lands)], [one.position]), bases=bases,
-        visits=FlownVisits([[place]], [45.0 + 15.0], [10.0]), conditions=conditions, rules=FlightRules(),
+        visits=FlownVisits([[place]], [45.0 + 15.0], [10.0], [math.inf]), conditions=conditions, rules=FlightRules(),
     )  # fmt: skip
     return float(costs.wh.first[0, 0] + costs.wh.service[0, 0] + costs.wh.end[0, 0])
 

@@ -5,6 +5,7 @@ It is written in a canonical form, whose SHA-256 names it. Everything sent to a 
 
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -39,6 +40,7 @@ from planning.clearance.nearby_zones import zones_near
 from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.request import EndAction, lost_link_from_json, lost_link_to_json, moment_to_json
 from planning.task import task_from_json
+from planning.trajectory.leg_speeds import inspection_speeds
 from planning.trajectory.waypoints import WaypointKind
 from planning.views.photo_flight import SPEED_MPS
 
@@ -134,8 +136,9 @@ def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
         take_off = TakeOff(LonLat(*uav.home.coords[:2]), uav.home_amsl_m)
     sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
     frozen = tuple(_waypoint(waypoint, sequence_of) for waypoint in waypoints)
-    photo_legs = photo_clearances_m(frozen)
-    frozen = tuple(replace(own, speed_mps=SPEED_MPS) if own.sequence in photo_legs and own.speed_mps is None else own for own in frozen)
+    wished = inspection_speeds([own.target for own in frozen], _speed_of(frozen), uav.cruise_speed_mps)
+    wished |= dict.fromkeys(photo_clearances_m(frozen), SPEED_MPS)
+    frozen = tuple(own if own.speed_mps is not None else replace(own, speed_mps=wished.get(own.sequence)) for own in frozen)
     return FrozenRoute(
         uav=uav.name,
         take_off=take_off,
@@ -146,6 +149,15 @@ def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
         departs_s=route.departs_s,
         begun_by=route.begun_by,
     )
+
+
+def _speed_of(waypoints: Sequence[FrozenWaypoint]) -> dict[int, float]:
+    """Return the inspection speeds of the targets that have one."""
+    return {
+        own.target: own.task.speed_mps
+        for own in waypoints
+        if own.target is not None and own.task is not None and own.task.speed_mps is not None
+    }
 
 
 def _waypoint(row: Waypoint, sequence_of: dict[int, int]) -> FrozenWaypoint:

@@ -36,6 +36,8 @@ def list_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]
     """Return the faults of the list itself, which prevent any further check."""
     if any(waypoint.task is not None and waypoint.task.view is not None for waypoint in until_now):
         return {"waypoints": _("This route takes planned photos beside wires: it cannot be changed by hand. Change its targets instead.")}
+    if any(waypoint.task is not None and waypoint.task.speed_mps is not None for waypoint in until_now):
+        return {"waypoints": _("This route flies along a line at an inspection speed: it cannot be changed by hand. Change its targets.")}
     if len(points) > MAX_WAYPOINTS:
         return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MAX_WAYPOINTS}}
     kept = [point.was for point in points if point.was is not None]

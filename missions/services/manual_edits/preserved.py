@@ -62,7 +62,7 @@ def _warning(name: str, uav: int, missed: int, count: int) -> dict[str, Any]:
 def _kept(mission: Mission, route: Route, legs: Sequence[EditedLeg], targets: dict[int, Any], ground: ManualEditContext) -> _Kept | None:
     """Return the route with all legs whose endpoints still exist; where these are not clear together, with each leg that stays clear."""
     stored = list(route.waypoints.select_related("target"))
-    if any((row.task or {}).get("view") for row in stored):  # photos beside wires are not changed by hand
+    if any((row.task or {}).keys() & {"view", "speed_mps"} for row in stored):  # such routes are not changed by hand: see list_faults
         return None
     planned = [step_row(row) for row in stored]
     there = {(start, end) for start, end, _first, _last in legs_between(planned, targets)}

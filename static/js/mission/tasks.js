@@ -8,7 +8,10 @@ export const MAX_HOLD_S = 3600;
 /** Seconds at each planned photo. */
 const VIEWS_HOLD_S = 3;
 
-/** @typedef {{ kind: Task["kind"], hold_s: number, views?: Views }} WholeTask */
+/** Speeds along a line that may be asked for, as in planning/task.py. */
+export const INSPECTION_SPEEDS_MPS = [0.5, 50];
+
+/** @typedef {{ kind: Task["kind"], hold_s: number, views?: Views, speed_mps?: number }} WholeTask */
 
 /** @param {Pick<PickedTarget, "kind" | "position">} target */
 export function isWhole(target) {
@@ -40,14 +43,18 @@ const inOrder = ({ pattern = "detail", gsd_mm, min_height_m, camera }) => ({
 /** @param {Pick<PickedTarget, "asset" | "kind" | "position" | "task">} target @returns {WholeTask} */
 export function taskOf(target) {
   if (!target.task) return usualTask(target);
-  const { kind, hold_s, views } = target.task;
+  const { kind, hold_s, views, speed_mps } = target.task;
+  if (speed_mps) return { kind, hold_s: hold_s ?? HOLD_S[kind], speed_mps };
   if (views) return { kind, hold_s: hold_s ?? VIEWS_HOLD_S, views: inOrder(views) };
   return { kind, hold_s: hold_s ?? HOLD_S[kind] };
 }
 
 /** @param {WholeTask} a @param {WholeTask} b */
 const isSameTask = (a, b) =>
-  a.kind === b.kind && a.hold_s === b.hold_s && JSON.stringify(a.views) === JSON.stringify(b.views);
+  a.kind === b.kind &&
+  a.hold_s === b.hold_s &&
+  a.speed_mps === b.speed_mps &&
+  JSON.stringify(a.views) === JSON.stringify(b.views);
 
 /** @param {PickedTarget} target */
 export function isUsualTask(target) {
@@ -58,19 +65,26 @@ export function isUsualTask(target) {
 export const canHaveViews = ({ asset, kind }) => asset !== null && kind === "tower";
 
 /**
- * The same targets with another task at some of them; without seconds each keeps its own where the kind stays.
+ * The same targets with another task at some of them; without seconds or speed each keeps its own where the kind stays. A speed is that
+ * along a line; null: as the UAV flies.
  *
  * @param {MissionSelection} selection
  * @param {string[]} keys
  * @param {Task} task
  * @returns {MissionSelection}
  */
-export function withTask(selection, keys, { kind, hold_s = null }) {
+export function withTask(selection, keys, { kind, hold_s = null, speed_mps }) {
   return changed(selection, keys, (target) => {
     const now = taskOf(target);
     const hasViews = now.views && kind === "photo" && hold_s !== null; // other seconds at each photo
     const seconds = hold_s ?? (now.kind === kind && !now.views ? now.hold_s : HOLD_S[kind]);
-    const next = { kind, hold_s: seconds, ...(hasViews ? { views: now.views } : {}) };
+    const speed = kind === "look" && isWhole(target) ? (speed_mps === undefined ? now.speed_mps : speed_mps) : null;
+    const next = {
+      kind,
+      hold_s: seconds,
+      ...(hasViews ? { views: now.views } : {}),
+      ...(speed ? { speed_mps: speed } : {}),
+    };
     if (isSameTask(now, next)) return target;
     const task = isSameTask(next, usualTask(target)) ? null : next;
     return now.views && !hasViews ? { ...withoutCamera(target, now.views), task } : { ...target, task };

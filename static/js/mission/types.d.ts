@@ -61,6 +61,8 @@ export interface Task {
   hold_s?: number | null;
   /** planned photos; null: none */
   views?: Views | null;
+  /** along a line, at most; null: as the UAV flies */
+  speed_mps?: number | null;
 }
 
 /** Photos of a target: of every part, an overview or its wires, with which camera, how fine, and how low the UAV may come. */

@@ -63,7 +63,9 @@ class World:
         visits: list[tuple[list[LonLat], float, float]],
         bases: list[LonLat] = (),
         zones: list[shapely.Polygon] = (),
+        most_mps: float = np.inf,
     ) -> None:
+        self.most_mps = most_mps
         self.graph, self.starts, self.visits, self.bases = graph, starts, visits, bases
         self.ways: TargetPaths = paths_between(
             graph,
@@ -83,7 +85,7 @@ class World:
             self.ways,
             fleet=FlyingFleet(classes, finishes, self.starts),
             bases=self.bases,
-            visits=FlownVisits(*([visit[part] for visit in self.visits] for part in range(3))),
+            visits=FlownVisits(*([visit[part] for visit in self.visits] for part in range(3)), [self.most_mps] * len(self.visits)),
             conditions=conditions,
             rules=RULES,
             ground=ground,
@@ -157,6 +159,16 @@ def test_in_calm_air_a_route_takes_its_parts() -> None:
     assert costs.wh.first[0, 0] == pytest.approx((24 * up + TAKING_OFF_S * hover + 200 * level) / 3600, rel=1e-3)
     assert costs.wh.service[0, 0] == pytest.approx((6 + 10 + STOPPING_S) * hover / 3600, rel=1e-3)
     assert costs.wh.end[0, 0] == pytest.approx((6 * up + 200 * level + (24 + LANDING_S) * hover) / 3600, rel=1e-3)
+
+
+@pytest.mark.parametrize(("most_mps", "flown_mps"), [(5.0, 5.0), (9.9, 9.9), (20.0, 10.0)])
+def test_a_line_is_inspected_no_faster_than_asked_and_than_the_uav_flies(most_mps: float, flown_mps: float) -> None:
+    along = [([at(0, 0), at(1000, 0), at(2000, 0)], 60.0, 0.0)]
+    costs = World(TOWERS, [at(0, 0)], along, most_mps=most_mps).costs([IRIS], [RETURN], Conditions())
+    assert costs.seconds.along[0, 0] == pytest.approx(2000 / flown_mps, rel=1e-3)
+    as_fast = World(TOWERS, [at(0, 0)], along).costs([IRIS], [RETURN], Conditions())
+    assert costs.seconds.first[0, 0] == as_fast.seconds.first[0, 0]
+    assert costs.wh.along[0, 0] == pytest.approx(2000 / flown_mps * power_w(IRIS.performance, airspeed_mps=flown_mps) / 3600, rel=1e-2)
 
 
 def test_wind_makes_the_way_there_and_the_way_back_differ() -> None:

@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -92,9 +93,13 @@ def test_tables_of_more_targets_and_cp_sat_find_plans_of_the_same_value(seed: in
     assert problem.value(found.routes) == pytest.approx(problem.value(routes), abs=0.05)
 
 
+def patient(found: BoundedPlan, *, time_s: float, **options: Any) -> Proof | None:
+    return proof.prove(found, time_s=120.0, **options)
+
+
 def test_a_plan_of_thirty_targets_is_proven_the_shortest() -> None:
     problem = plain(30, 3, Objective.TOTAL)
-    before, after = solve(problem), solve(problem, search_s=0.5, prover=proof.prove)
+    before, after = solve(problem), solve(problem, search_s=0.1, prover=patient)
     assert not before.is_proven
     assert (after.is_proven, after.method) == (True, proof.CP_SAT)
     assert after.total_m <= before.total_m + 0.05

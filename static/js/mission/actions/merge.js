@@ -26,9 +26,10 @@ const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav
  * @param {PickedTarget} b
  */
 const isSameTask = (a, b) =>
-  !a.task ||
-  !b.task ||
-  (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
+  (a.task?.speed_mps ?? null) === (b.task?.speed_mps ?? null) &&
+  (!a.task ||
+    !b.task ||
+    (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s)));
 /** @param {PickedTarget} a @param {PickedTarget} b */
 const isSameTarget = (a, b) => isSameTask(a, b) && JSON.stringify(wishesOf(a)) === JSON.stringify(wishesOf(b));
 /** @param {PickedUav} uav */

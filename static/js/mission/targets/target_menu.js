@@ -4,9 +4,9 @@ import { gsdText } from "../../cameras/words.js";
 import { h, icon } from "../../dom.js";
 import { closeMenu } from "../../page/chrome.js";
 import { t, tn } from "../../text.js";
-import { durationText } from "../../units.js";
+import { durationText, speedText } from "../../units.js";
 import { sensorsKnown, wishesOf } from "../selection.js";
-import { canHaveViews, MAX_HOLD_S, taskOf } from "../tasks.js";
+import { canHaveViews, INSPECTION_SPEEDS_MPS, isWhole, MAX_HOLD_S, taskOf } from "../tasks.js";
 import { uavsByName } from "../uavs/mission_uavs.js";
 import { lockOf, wishedPlace } from "./locks.js";
 
@@ -32,9 +32,10 @@ export function taskIcon(task) {
 }
 
 /** "Photos" @param {Task} task */
-export function taskWord({ kind, views }) {
+export function taskWord({ kind, views, speed_mps }) {
   if (views) return VIEWS_WORDS[views.pattern ?? "detail"];
-  return (TASKS.find((task) => task.kind === kind) ?? TASKS[0]).word();
+  const word = (TASKS.find((task) => task.kind === kind) ?? TASKS[0]).word();
+  return speed_mps ? `${word} ${speedText(speed_mps)}` : word;
 }
 
 /** "Take photos, 10 s" @param {Task} task */
@@ -44,7 +45,9 @@ export function taskText(task) {
     return t("Photograph the wires from both sides, GSD {gsd}", { gsd: gsdText(task.views.gsd_mm) });
   if (task.views) return t("Photograph every part, GSD {gsd}", { gsd: gsdText(task.views.gsd_mm) });
   const { words } = TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0];
-  return task.hold_s ? `${words()}, ${secondsText(task.hold_s)}` : words();
+  return [words(), task.hold_s && secondsText(task.hold_s), task.speed_mps && speedText(task.speed_mps)]
+    .filter(Boolean)
+    .join(", ");
 }
 
 /** @param {number} seconds */
@@ -199,6 +202,39 @@ export function uavMenu(target, actions, selection) {
 }
 
 /**
+ * The speed along lines, at most; empty: as the UAV flies.
+ *
+ * @param {Task[]} tasks
+ * @param {(task: Task) => void} set
+ */
+function speedForm(tasks, set) {
+  const speeds = new Set(tasks.map(({ speed_mps }) => speed_mps ?? null));
+  const [least, most] = INSPECTION_SPEEDS_MPS;
+  const input = h("input", {
+    class: "input",
+    type: "number",
+    min: String(least),
+    max: String(most),
+    step: "0.5",
+    placeholder: speeds.size === 1 ? t("as the UAV flies") : t("several"),
+    value: speeds.size === 1 ? String(tasks[0].speed_mps ?? "") : "",
+    id: "task-speed",
+  });
+  /** @param {SubmitEvent} event */
+  const submit = (event) => {
+    event.preventDefault();
+    set({ kind: "look", speed_mps: Number.isNaN(input.valueAsNumber) ? null : input.valueAsNumber });
+  };
+  return h(
+    "form",
+    { class: "task-seconds", onsubmit: submit },
+    h("label", { for: "task-speed" }, t("Inspection speed")),
+    h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, "m/s")),
+    h("button", { class: "button" }, t("Set")),
+  );
+}
+
+/**
  * The menu for these targets; `known` is { selection, fleet, orders }, `more` are additional acts: [{ icon, words, act }]. planViews
  * lets the user plan photos of towers.
  *
@@ -279,6 +315,7 @@ export function targetMenu(targets, actions, known, { more = [], planViews } = {
       h("div", { class: "with-unit" }, seconds, h("span", { class: "unit" }, "s")),
       h("button", { class: "button" }, t("Set")),
     ),
+    targets.every(isWhole) && tasks.every(({ kind }) => kind === "look") && speedForm(tasks, set),
     h("hr", {}),
     h("p", { class: "caption" }, t("Priority and requirements")),
     wishChoices(targets, actions, known),
