@@ -122,6 +122,23 @@ test("a task is set for some targets and asked for where it is not the usual one
   assert.deepEqual(requestOf(back).targets, requestOf(selection).targets);
 });
 
+test("a line that is flown along may have a speed, which its other tasks end", () => {
+  const line = targetOf({ id: 9, kind: "line", properties: { label: "E9" } });
+  const tower = targetOf({ id: 1, kind: "tower", properties: { label: "T1" } });
+  const selection = { ...EMPTY, targets: [line, tower] };
+  const slow = withTask(selection, [line.key, tower.key], { kind: "look", speed_mps: 5 });
+  assert.deepEqual(slow.targets.map(taskOf), [
+    { kind: "look", hold_s: 0, speed_mps: 5 },
+    { kind: "look", hold_s: 5 },
+  ]);
+  assert.ok(!isUsualTask(slow.targets[0]));
+  const held = withTask(slow, [line.key], { kind: "look", hold_s: 20 });
+  assert.deepEqual(taskOf(held.targets[0]), { kind: "look", hold_s: 20, speed_mps: 5 });
+  assert.equal(withTask(slow, [line.key], { kind: "look", speed_mps: null }).targets[0].task, null);
+  assert.equal(taskOf(withTask(slow, [line.key], { kind: "photo" }).targets[0]).speed_mps, undefined);
+  assert.deepEqual(requestOf({ ...slow, uavs: [] }).targets[0].task, { kind: "look", hold_s: 0, speed_mps: 5 });
+});
+
 test("a stored task that is the usual one asks for the same plan as none", () => {
   const stored = storedTarget({
     asset: 7,

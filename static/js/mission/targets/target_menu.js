@@ -216,7 +216,8 @@ function speedForm(tasks, set) {
     min: String(least),
     max: String(most),
     step: "0.5",
-    placeholder: speeds.size === 1 ? t("as the UAV flies") : t("several"),
+    placeholder: speeds.size === 1 ? t("any") : t("several"),
+    title: t("Empty: as the UAV flies"),
     value: speeds.size === 1 ? String(tasks[0].speed_mps ?? "") : "",
     id: "task-speed",
   });

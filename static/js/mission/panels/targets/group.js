@@ -4,8 +4,9 @@ import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { labelOfParts } from "../../targets/line_parts.js";
+import { taskIcon, taskText, taskWord } from "../../targets/target_menu.js";
 
-/** @import { PickedTarget } from "../../types.d.ts" */
+/** @import { PickedTarget, Task } from "../../types.d.ts" */
 /** @import { RowState } from "./row.js" */
 
 /** @typedef {{ key: string, run: string, words: string, keys: string[], isOfParts: boolean }} LineGroup `key`: of its first target, `run`: line and route */
@@ -64,9 +65,9 @@ export function withoutFolded(targets, groups, isFolded) {
  *
  * @param {() => void} changed
  * @param {number} most
- * @param {((keys: string[]) => void) | null} remove targets; null for those who may not
+ * @param {GroupActs | null} acts null for those who may not change the mission
  */
-export function createGroups(changed, most, remove) {
+export function createGroups(changed, most, acts) {
   /** @type {Map<string, LineGroup>} by the key of the first target */
   let groups = new Map();
   /** @type {Map<string, boolean>} by line and route, where the user has decided */
@@ -105,7 +106,7 @@ export function createGroups(changed, most, remove) {
           ...group,
           isFolded: isFolded(group),
           toggle,
-          remove: remove && (() => remove(group.keys)),
+          acts,
           place: places.get(group.key),
         },
       );
@@ -113,14 +114,21 @@ export function createGroups(changed, most, remove) {
   };
 }
 
-/** @typedef {LineGroup & { isFolded: boolean, toggle: () => void, remove: (() => void) | null, place: RowState["place"] }} ShownGroup */
+/**
+ * What can be done with all targets of a folded group.
+ *
+ * @typedef {object} GroupActs
+ * @property {(keys: string[]) => void} remove
+ * @property {(keys: string[]) => Task[]} tasksOf
+ * @property {(keys: string[], opener: HTMLElement) => void} openTask
+ */
+/** @typedef {LineGroup & { isFolded: boolean, toggle: () => void, acts: GroupActs | null, place: RowState["place"] }} ShownGroup */
 
 /** @param {HTMLElement} row @param {ShownGroup | undefined} group */
 function refreshGroup(row, group) {
   const before = row.querySelector(".group-head");
   row.classList.toggle("folded", Boolean(group?.isFolded));
-  const removing = row.querySelector(".group-remove");
-  if (!group?.isFolded) removing?.remove();
+  if (!group?.isFolded) for (const button of row.querySelectorAll(".group-task, .group-remove")) button.remove();
   if (!group) {
     before?.remove();
     return;
@@ -135,12 +143,7 @@ function refreshGroup(row, group) {
     );
     row.prepend(head);
   }
-  if (group.isFolded && group.remove) {
-    const button = /** @type {HTMLElement} */ (removing ?? removeButton());
-    button.setAttribute("aria-label", t("Remove {name}", { name: group.words }));
-    button.onclick = group.remove;
-    if (!removing) head.after(button);
-  }
+  if (group.isFolded && group.acts) refreshActs(row, head, group, group.acts);
   head.setAttribute("aria-expanded", String(!group.isFolded));
   /** @type {HTMLElement} */ (head).onclick = group.toggle;
   find(head, "span").textContent = group.words;
@@ -152,6 +155,30 @@ function refreshGroup(row, group) {
     ? tn(group.keys.length, "{count} part", "{count} parts")
     : tn(group.keys.length, "{count} target", "{count} targets");
 }
+
+/** @param {HTMLElement} row @param {Element} head @param {ShownGroup} group @param {GroupActs} acts */
+function refreshActs(row, head, { keys, words }, acts) {
+  if (!row.querySelector(".group-remove")) head.after(taskButton(), removeButton());
+  const removing = find(row, ".group-remove", HTMLElement);
+  removing.setAttribute("aria-label", t("Remove {name}", { name: words }));
+  removing.onclick = () => acts.remove(keys);
+  const button = find(row, ".group-task", HTMLElement);
+  button.onclick = () => acts.openTask(keys, button);
+  const tasks = acts.tasksOf(keys);
+  const isOne = new Set(tasks.map(taskText)).size === 1;
+  const task = isOne ? taskText(tasks[0]) : t("several tasks");
+  const title = t("{task}. Change task, priority", { task });
+  if (button.title === title) return;
+  button.replaceChildren(
+    icon(isOne ? taskIcon(tasks[0]) : "list-checks", "small"),
+    h("span", { class: "task-word" }, isOne ? taskWord(tasks[0]) : t("several")),
+  );
+  button.title = title;
+  button.setAttribute("aria-label", t("Task, priority of {name}: {task}", { name: words, task }));
+}
+
+const taskButton = () =>
+  h("button", { type: "button", class: "task-chip group-task", "aria-haspopup": "true", "aria-expanded": "false" });
 
 const removeButton = () =>
   h(

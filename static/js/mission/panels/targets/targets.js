@@ -8,7 +8,7 @@ import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan/plan_view.js
 import { arrivalsOf } from "../../plan/route_times.js";
 import { lockOf, ordersOf, wishedPlace } from "../../targets/locks.js";
 import { targetMenu, uavMenu } from "../../targets/target_menu.js";
-import { isWhole } from "../../tasks.js";
+import { isWhole, taskOf } from "../../tasks.js";
 import { createChoosing } from "./choosing.js";
 import { mountChosenBar } from "./chosen_bar.js";
 import { createGroups } from "./group.js";
@@ -18,6 +18,7 @@ import { refreshRow, targetRow } from "./row.js";
 /** @import { mountMap } from "../../map/map_panel.js" */
 /** @import { PlanViews } from "../../targets/target_menu.js" */
 /** @import { Choosing } from "./choosing.js" */
+/** @import { GroupActs } from "./group.js" */
 
 /**
  * What the rows are drawn from.
@@ -45,7 +46,7 @@ export function mountTargets(store, actions, canPlan, map) {
   let shown = { places: new Map(), missed: new Set(), order: [], visible: [], arrivals: new Map(), orders: [] };
   const list = byId("target-list");
   const planViews = viewPlanning(list, actions, map);
-  const groups = createGroups(() => refresh(store.state), SHOWN_FIRST, canPlan ? actions.removeTargets : null);
+  const groups = createGroups(() => refresh(store.state), SHOWN_FIRST, groupActs(store, actions, canPlan, planViews));
   const choosing = createChoosing(store, { canPlan, order: () => shown.order });
   const bar = canPlan
     ? mountChoosing(list, store, actions, { choosing, planViews, refresh: () => refresh(store.state) })
@@ -169,6 +170,33 @@ function mountChoosing(list, store, actions, { choosing, planViews, refresh }) {
       byId("undo", HTMLButtonElement).disabled = !canUndo;
       byId("redo", HTMLButtonElement).disabled = !canRedo;
       bar.refresh(choosing.isOn());
+    },
+  };
+}
+
+/**
+ * What can be done with a folded group: its tasks at once, and what can be done with the whole line.
+ *
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {boolean} canPlan
+ * @param {PlanViews} planViews
+ * @returns {GroupActs | null} null for those who may not change the mission
+ */
+function groupActs(store, actions, canPlan, planViews) {
+  /** @param {string[]} keys */
+  function targetsOf(keys) {
+    const wanted = new Set(keys);
+    return store.state.selection.targets.filter(({ key }) => wanted.has(key));
+  }
+  if (!canPlan) return null;
+  return {
+    remove: actions.removeTargets,
+    tasksOf: (keys) => targetsOf(keys).map(taskOf),
+    openTask(keys, opener) {
+      const targets = targetsOf(keys);
+      const known = { ...store.state, orders: ordersOf(store.state.plan) };
+      toggleMenu(opener, () => targetMenu(targets, actions, known, { more: more(targets[0], actions), planViews }));
     },
   };
 }
