@@ -145,7 +145,8 @@ def main() -> int:
               f"({mission.after.method}), {mission.took_s:.1f} s", flush=True)  # fmt: skip
     rows = [row(missions, *key) for key, missions in sorted(found.items())]
     rows.append(row([one for missions in found.values() for one in missions], "13-25", "all"))
-    text = f"{table(HEAD, rows)}\n\nPlans of other seeds that are better than a proven one: {contradicted}.\n\n{machine("ortools", "numba")}"
+    told = f"Plans of other seeds that are better than a proven one: {contradicted}."
+    text = "\n\n".join((table(HEAD, rows), told, machine("ortools", "numba")))
     print(text)
     if options.write:
         write_section(TITLE, text)

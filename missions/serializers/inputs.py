@@ -32,7 +32,7 @@ from missions.serializers.limits import (
     MIN_CHARGING_W,
 )
 from missions.serializers.performance import fault_words
-from missions.serializers.view_plans import ViewsInputSerializer, views_request
+from missions.serializers.view_plans import TaskSerializer, views_request
 from missions.services import (
     CALM,
     InvalidRequest,
@@ -58,37 +58,11 @@ from planning.energy.performance import (
 )
 from planning.problem import Objective
 from planning.request import GO_ON, EndAction, LostLinkRequest, lost_link_from_json
-from planning.task import DEFAULT_HOLD_S, INSPECTION_SPEEDS_MPS, MAX_HOLD_S, VIEWS_HOLD_S, VIEWS_HOLDS_S, Task, TaskKind
+from planning.task import DEFAULT_HOLD_S, MAX_HOLD_S, VIEWS_HOLD_S, Task, TaskKind
 from workspace.api import strict_serializers as serializers
 from workspace.api.external_data import AttributesField, ExternalIdField
 from workspace.api.fields import FiniteFloatField
 from workspace.models import Organisation
-
-
-class TaskSerializer(KnownFieldsSerializer):
-    """Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold; with `views` 3 s at each photo."""
-
-    kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
-    hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
-    views = ViewsInputSerializer(required=False, allow_null=True, help_text="with photo, of a power tower: photos from planned poses")
-    speed_mps = FiniteFloatField(
-        min_value=INSPECTION_SPEEDS_MPS[0],
-        max_value=INSPECTION_SPEEDS_MPS[1],
-        required=False,
-        allow_null=True,
-        help_text="with look, of a line or railway that is flown along: over ground at most; null: as the UAV flies",
-    )
-
-    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
-        if attrs.get("speed_mps") is not None and attrs["kind"] != TaskKind.LOOK:
-            raise serializers.ValidationError({"speed_mps": _("Only a look along a line has a speed.")})
-        if attrs.get("views") and attrs["kind"] != TaskKind.PHOTO:
-            raise serializers.ValidationError({"views": _("Only photos have views.")})
-        low_s, high_s = VIEWS_HOLDS_S
-        if attrs.get("views") and not low_s <= attrs.get("hold_s", VIEWS_HOLD_S) <= high_s:
-            problem = _("From %(low)s to %(high)s s at each photo.") % {"low": f"{low_s:g}", "high": f"{high_s:g}"}
-            raise serializers.ValidationError({"hold_s": problem})
-        return attrs
 
 
 class WindLayerSerializer(KnownFieldsSerializer):

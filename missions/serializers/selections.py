@@ -9,7 +9,7 @@ from missions.models import SavedSelection, TargetPriority
 from missions.models.missions import between_ends
 from missions.selectors.selections import KeptTarget, kept_targets
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
-from missions.serializers.shapes import TaskOutputSerializer
+from missions.serializers.view_plans import TaskOutputSerializer
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared
 

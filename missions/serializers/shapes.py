@@ -7,9 +7,8 @@ from missions.models import END_ACTIONS, OBJECTIVES, WAYPOINT_KINDS, MissionStat
 from missions.selectors.fleet import FIGURES
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
-from missions.serializers.view_plans import ViewSerializer, ViewsSerializer
+from missions.serializers.view_plans import TaskOutputSerializer
 from planning.clearance.lost_link import LostLink, ReturnTrouble
-from planning.task import TaskKind
 from workspace.api.external_data import AttributesField
 from workspace.api.fields import WhySerializer
 from workspace.jobs.serializers import Declared
@@ -18,14 +17,6 @@ from workspace.jobs.serializers import Declared
 class LineSerializer(serializers.Serializer):
     type = serializers.ChoiceField(choices=["LineString"])
     coordinates = serializers.ListField(child=PositionField())
-
-
-class TaskOutputSerializer(serializers.Serializer):
-    kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
-    hold_s = serializers.FloatField()
-    views = ViewsSerializer(required=False, help_text="of a target that is photographed from planned poses")
-    view = ViewSerializer(required=False, help_text="of a waypoint at which one of these photos is taken")
-    speed_mps = serializers.FloatField(required=False, help_text="along a line or railway, over ground at most")
 
 
 class WaypointSerializer(serializers.Serializer):
@@ -151,9 +142,7 @@ class QualitySerializer(serializers.Serializer):
         "of the longest flight, along the ways preferred there; not there in plans of before",
     )
     method = serializers.CharField(help_text="how it was found; empty: not known")
-    proof = serializers.UUIDField(
-        required=False, allow_null=True, help_text="of a stored plan: the job that looks for a better one; null or not there: none has yet"
-    )
+    proof = serializers.UUIDField(required=False, help_text="of a stored plan: the job that looks for a better one, if one has")
     wish = WishSerializer(allow_null=True, help_text="null where nothing is locked")
 
 

@@ -1,4 +1,4 @@
-"""Cameras, and plans of photos, in and out."""
+"""Cameras, plans of photos, and tasks, in and out."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,7 +7,17 @@ from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField
 from missions.serializers.known_fields import KnownFieldsSerializer
-from planning.task import MM_PER_M, OVERVIEW_GSD_M, ViewPattern, ViewsRequest
+from planning.task import (
+    INSPECTION_SPEEDS_MPS,
+    MAX_HOLD_S,
+    MM_PER_M,
+    OVERVIEW_GSD_M,
+    VIEWS_HOLD_S,
+    VIEWS_HOLDS_S,
+    TaskKind,
+    ViewPattern,
+    ViewsRequest,
+)
 from planning.views.camera import InvalidCamera, camera_from_json, camera_to_json
 from planning.views.catalogue import CatalogueCamera, catalogue
 from planning.views.limits import LIMITS
@@ -282,3 +292,37 @@ def catalogue_json(own: CatalogueCamera) -> dict[str, Any]:
     return camera_to_json(own.camera) | {
         "key": own.key, "maker": own.maker, "payload": own.payload, "sources": list(own.sources), "derived": own.derived,
     }  # fmt: skip
+
+
+class TaskSerializer(KnownFieldsSerializer):
+    """Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold; with `views` 3 s at each photo."""
+
+    kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
+    hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
+    views = ViewsInputSerializer(required=False, allow_null=True, help_text="with photo, of a power tower: photos from planned poses")
+    speed_mps = FiniteFloatField(
+        min_value=INSPECTION_SPEEDS_MPS[0],
+        max_value=INSPECTION_SPEEDS_MPS[1],
+        required=False,
+        allow_null=True,
+        help_text="with look, of a line or railway that is flown along: over ground at most; null: as the UAV flies",
+    )
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if attrs.get("speed_mps") is not None and attrs["kind"] != TaskKind.LOOK:
+            raise serializers.ValidationError({"speed_mps": _("Only a look along a line has a speed.")})
+        if attrs.get("views") and attrs["kind"] != TaskKind.PHOTO:
+            raise serializers.ValidationError({"views": _("Only photos have views.")})
+        low_s, high_s = VIEWS_HOLDS_S
+        if attrs.get("views") and not low_s <= attrs.get("hold_s", VIEWS_HOLD_S) <= high_s:
+            problem = _("From %(low)s to %(high)s s at each photo.") % {"low": f"{low_s:g}", "high": f"{high_s:g}"}
+            raise serializers.ValidationError({"hold_s": problem})
+        return attrs
+
+
+class TaskOutputSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
+    hold_s = serializers.FloatField()
+    views = ViewsSerializer(required=False, help_text="of a target that is photographed from planned poses")
+    view = ViewSerializer(required=False, help_text="of a waypoint at which one of these photos is taken")
+    speed_mps = serializers.FloatField(required=False, help_text="along a line or railway, over ground at most")

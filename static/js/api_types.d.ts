@@ -4950,9 +4950,9 @@ export interface components {
             method: string;
             /**
              * Format: uuid
-             * @description of a stored plan: the job that looks for a better one; null or not there: none has yet
+             * @description of a stored plan: the job that looks for a better one, if one has
              */
-            proof?: string | null;
+            proof?: string;
             /** @description null where nothing is locked */
             wish: components["schemas"]["Wish"] | null;
             objective: components["schemas"]["ObjectiveEnum"];
@@ -5525,9 +5525,9 @@ export interface components {
             method: string;
             /**
              * Format: uuid
-             * @description of a stored plan: the job that looks for a better one; null or not there: none has yet
+             * @description of a stored plan: the job that looks for a better one, if one has
              */
-            proof?: string | null;
+            proof?: string;
             /** @description null where nothing is locked */
             wish: components["schemas"]["Wish"] | null;
         };

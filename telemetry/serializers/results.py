@@ -9,7 +9,7 @@ from rest_framework import serializers
 from inspection.models import AssetReference
 from missions.fields import PositionField
 from missions.models import MissionState, TargetState
-from missions.serializers.shapes import TaskOutputSerializer
+from missions.serializers.view_plans import TaskOutputSerializer
 from workspace.api.external_data import AttributesField
 from workspace.jobs.serializers import Declared
 from workspace.reason_texts import column_text
