@@ -195,6 +195,23 @@ def test_a_long_plan_that_is_stopped_keeps_the_best_until_then(visitor: Visitor)
 
 
 @pytest.mark.long
+def test_a_stored_plan_is_proven_in_the_background(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
+    picked = [{"asset": tower["id"]} for tower in towers[:: len(towers) // 16][:16]]
+    uavs = [{"name": name, "position": place} for name, place in (("Wagtail", region.west), ("Dipper", region.east))]
+    body = {"name": "To be proven", "targets": picked, "uavs": uavs, "objective": "total", "plan": True}
+    mission = sends(page, "missions", body)
+    page.goto(f"/missions/{mission['mission']}")
+    quality = page.locator("#plan-quality")
+    expect(quality).to_contain_text(re.compile("Proven shortest|Looking for a better plan"), timeout=60_000)
+    expect(quality).to_contain_text("Proven shortest", timeout=120_000)
+    expect(quality.get_by_role("button", name="Stop")).to_have_count(0)
+    stored = asks(page, f"/missions/{mission['mission']}")
+    assert (stored["plan"]["is_proven"], stored["plan"]["gap"]) == (True, 0.0)
+
+
+@pytest.mark.long
 def test_a_fleet_is_narrowed_by_sensor_and_base_and_several_are_chosen_at_once(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     kinds = {
