@@ -21,3 +21,4 @@ class MissionsConfig(AppConfig):
         register_bases("missions.services.fleet.demo_uavs.positions_of_bases")
         register_deletion("missions.services.fleet.demo_uavs.delete_demo_uavs")
         register_result_texts("missions.tasks.solve_plan", "missions.reason_texts.plan_with_texts")
+        register_result_texts("missions.proof_tasks.prove_mission", "missions.reason_texts.plan_with_texts")

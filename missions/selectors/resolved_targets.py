@@ -91,12 +91,12 @@ def _whole_towers_and_bridges(targets: Sequence[TargetRequest], points: Mapping[
 
 def _plain_place(point: PointAsset, index: int, target: TargetRequest) -> NamedTarget:
     height_m = asset_height_m(kind=point.kind, subtype=point.subtype, tagged_m=point.height_m, voltage_v=point.max_voltage_v)
-    task = _task(target, point.kind, is_path=False)
+    task = _task(index, target, point.kind, is_path=False)
     return NamedTarget(index, (point.position,), task, height_m, point.key, point.kind, called=lambda: asset_label(point.as_asset()))
 
 
 def _place_at(position: LonLat, index: int, target: TargetRequest) -> NamedTarget:
-    return NamedTarget(index, (position,), _task(target, None, is_path=False), 0.0, called=partial(position_label, position))
+    return NamedTarget(index, (position,), _task(index, target, None, is_path=False), 0.0, called=partial(position_label, position))
 
 
 def position_label(position: LonLat) -> str:
@@ -109,7 +109,7 @@ def _place_on(asset: Asset, index: int, target: TargetRequest) -> NamedTarget:
     return NamedTarget(
         target=index,
         course=course,
-        task=_task(target, asset.kind, is_path=len(course) > 1),
+        task=_task(index, target, asset.kind, is_path=len(course) > 1),
         height_m=asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v),
         asset=asset.pk,
         kind=asset.kind,
@@ -117,7 +117,9 @@ def _place_on(asset: Asset, index: int, target: TargetRequest) -> NamedTarget:
     )
 
 
-def _task(target: TargetRequest, kind: str | None, *, is_path: bool) -> Task:
+def _task(index: int, target: TargetRequest, kind: str | None, *, is_path: bool) -> Task:
+    if target.task is not None and target.task.speed_mps is not None and not is_path:
+        raise InvalidRequest({f"targets.{index}.task": _("Only a look along a line has a speed.")})
     return target.task or default_task(kind, is_path=is_path)
 
 

@@ -101,6 +101,7 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "", **other
     with transaction.atomic():
         mission = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)  # the current row, to avoid mixing two plans
         values = {field: getattr(mission, field) for field in COPIED} | other
+        values["plan_quality"] = {name: value for name, value in (mission.plan_quality or {}).items() if name != "proof"} or None
         if values["state"] != MissionState.DRAFT:
             values["state"] = MissionState.PLANNED
         copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:MAX_NAME_LENGTH], **values)

@@ -28,6 +28,12 @@ def stored_routes(mission: Mission) -> list[PlannedRoute] | None:
     return [_stored(route) for route in found]
 
 
+def speeds_of_targets(mission: Mission) -> dict[int, float]:
+    """Return the inspection speeds [m/s] of the targets that have one, by their places in the mission."""
+    found = {target.sequence: (target.task or {}).get("speed_mps") for target in mission.targets.all()}
+    return {place: speed_mps for place, speed_mps in found.items() if speed_mps is not None}
+
+
 def _stored(route: Route) -> PlannedRoute:
     rows = list(route.waypoints.all())
     if not rows:

@@ -46,6 +46,7 @@ from workspace.api.schema import CHANGED_SINCE, DAY_OR_TIME, PAGE_PARAMETERS, re
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
 from workspace.api.whole_numbers import WholeNumber
+from workspace.jobs.services import TooManyJobs
 from workspace.models import Job, User
 
 ORDER_NAMES = [*ORDERS, *(f"-{name}" for name in ORDERS)]
@@ -325,7 +326,10 @@ class MissionProof(_PlansWhenAsked):
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         with api_problems():
-            job = services.begin_proof(mission=mission)
+            try:
+                job = services.begin_proof(mission=mission)
+            except TooManyJobs as error:
+                raise ApiProblem(429, "too_many_jobs", _("Enough plans wait to be proven. Ask again later."), retry_after_s=60) from error
         return job_answer(job, mission=str(mission.pk))
 
 

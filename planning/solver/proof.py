@@ -62,13 +62,18 @@ def prove(found: BoundedPlan, *, time_s: float, stop: Stop, on_look: OnLook, see
             found = replace(found, routes=min(found.routes, routes, key=lambda one: merit(found.problem, one)))
         subsets_s = time_s * (1.0 - CIRCUITS_SHARE) if arcs.is_makespan else 0.0
         look = _shared(on_look, time_s)
-        proof = _Circuits(found, arcs, seed).proof(pool, time_s - subsets_s, stop, look)
+        circuits = _Circuits(found, arcs, seed)
+        proof = circuits.proof(pool, time_s - subsets_s, stop, look)
     finally:
         pool.shutdown(wait=False)  # tables that nobody waits for any more end in half a minute at most
-    if proof.bound is None or not subsets_s or stop():
+    if proof.bound is None:
         return proof
-    best = replace(found, routes=proof.routes, bound=proof.bound)
-    return replace(proof, bound=max(proof.bound, _bound_by_subsets(best, arcs, subsets_s, stop, look, seed)))
+    best, bound = replace(found, routes=proof.routes, bound=proof.bound), proof.bound
+    if subsets_s and not stop():
+        bound = max(bound, _bound_by_subsets(best, arcs, subsets_s, stop, look, seed))
+    if not circuits.is_whole:  # a plan that leaves out less may be the best
+        bound = min(bound, found.problem.value(proof.routes) * (1.0 - 1e-6))
+    return replace(proof, bound=bound)
 
 
 def _shared(on_look: OnLook, time_s: float) -> Callable[[Routes, float], None]:
@@ -133,26 +138,28 @@ class _Circuits:
 
     def __init__(self, found: BoundedPlan, arcs: Arcs, seed: int) -> None:
         self._problem, self._arcs, self._usable, self._seed = found.problem, arcs, found.usable, seed
+        self.is_whole = True  # no plan leaves out less than the best one so far
         self._routes, self._bound = _sorted_rows(found.problem, arcs, found.routes), found.bound
         self._model = cp_model.CpModel()
         self._rows: list[list[_Arc]] = []
         self._is_idle: list[cp_model.IntVar] = []
         self._flown: dict[int, list[cp_model.LiteralT]] = {}  # by target
         self._values: list[cp_model.LinearExprT] = []
+        self._left_out: list[tuple[cp_model.IntVar, int]] = []  # whether a target is, where not all can be visited
         for row in range(len(arcs.first_m)):
             self._add_row(row)
+        self._add_most_targets()
         self._missing = self._add_targets()
         self._value = self._add_value()
 
     def proof(self, pool: ThreadPoolExecutor, time_s: float, stop: Stop, look: Callable[[Routes, float], None]) -> Proof:
         """Return the proof after so many seconds at most."""
-        is_whole = True
         if self._missing is not None:  # first as few targets left out as possible
             time_s /= 2.0
             self._model.minimize(self._missing)
             status, least = self._solve(pool, time_s, stop, lambda bound: look(self._routes, self._bound))
-            is_whole = status == cp_model.OPTIMAL
             missed = merit(self._problem, self._routes)[0]
+            self.is_whole = status == cp_model.OPTIMAL and least is not None and round(least) >= round(missed)
             self._model.add(self._missing <= round(missed))
             if least is None or stop():
                 return Proof(self._routes, self._bound, CP_SAT)
@@ -161,10 +168,9 @@ class _Circuits:
         value, slack = self._problem.value(self._routes), self._slack
         if least is None:
             return Proof(self._routes, self._bound, CP_SAT)
-        if status == cp_model.OPTIMAL and is_whole and value <= least / SCALE + slack:
+        if status == cp_model.OPTIMAL and self.is_whole and value <= least / SCALE + slack:
             return Proof(self._routes, None, CP_SAT)
-        bound = max(self._bound, least / SCALE - slack)
-        return Proof(self._routes, bound if is_whole else min(bound, value * (1.0 - 1e-6)), CP_SAT)
+        return Proof(self._routes, max(self._bound, least / SCALE - slack), CP_SAT)
 
     @property
     def _slack(self) -> float:
@@ -193,8 +199,7 @@ class _Circuits:
     def _take(self, routes: Routes) -> None:
         """Keep the plan if it is better: its limits are checked again, those of the model are rounded."""
         problem = self._problem
-        is_possible = all(problem.keeps_limits(row, route) for row, route in enumerate(routes) if route)
-        if is_possible and merit(problem, routes) < merit(problem, self._routes):
+        if _keeps_limits(problem, self._arcs, routes) and merit(problem, routes) < merit(problem, self._routes):
             self._routes = routes
 
     # --- the model ---------------------------------------------------------------------------------------------------------------
@@ -239,11 +244,16 @@ class _Circuits:
                 scale = LIMIT_SCALE / max(limit, 1.0)
                 taken = [(arc.literal, int(_amount(arc, first, onward, end) * scale)) for arc in self._rows[row] if arc.begin != arc.end]
                 self._model.add(_sum(taken) <= int(limit * scale) + 1)
-        if arcs.most[row] < len(arcs.weight) or (arcs.done > 1).any():
-            self._model.add(
-                _sum([(arc.literal, int(arcs.done[arc.end - 1])) for arc in self._rows[row] if arc.end and arc.begin != arc.end])
-                <= int(arcs.most[row])
-            )
+
+    def _add_most_targets(self) -> None:
+        """The targets of a UAV are limited over all its flights."""
+        arcs = self._arcs
+        for rows in _rows_of(arcs).values():
+            done = [
+                (arc.literal, int(arcs.done[arc.end - 1])) for row in rows for arc in self._rows[row] if arc.end and arc.begin != arc.end
+            ]
+            if done and sum(count for _, count in done) > arcs.most[rows[0]]:
+                self._model.add(_sum(done) <= int(arcs.most[rows[0]]))
 
     def _value_of_row(self, row: int) -> cp_model.LinearExprT:
         """Return what the objective counts of a row, times SCALE."""
@@ -273,7 +283,7 @@ class _Circuits:
         for target, literals in self._flown.items():
             is_missing = self._model.new_bool_var("")
             self._model.add_exactly_one([*literals, is_missing])
-            self._model.add_hint(is_missing, target not in flown)
+            self._left_out.append((is_missing, target))
             missing.append((is_missing, round(float(self._arcs.weight[target]))))
         beyond = sum(round(float(weight)) for target, weight in enumerate(self._arcs.weight) if target not in self._flown)
         return _sum(missing) + beyond
@@ -298,6 +308,9 @@ class _Circuits:
     def _hint(self) -> None:
         """Begin with the best plan so far."""
         self._model.proto.clear_solution_hint()
+        done = {int(self._arcs.target[visit]) for route in self._routes for visit in route}
+        for is_missing, target in self._left_out:
+            self._model.add_hint(is_missing, target not in done)
         for own, route in zip(self._rows, self._routes, strict=True):
             nodes = [0, *(visit + 1 for visit in route), 0]
             flown = set(pairwise(nodes))
@@ -328,6 +341,22 @@ class _Watch(cp_model.CpSolverSolutionCallback):
         self._on_plan(self.boolean_value)
 
 
+def _keeps_limits(problem: Problem, arcs: Arcs, routes: Routes) -> bool:
+    """Whether each flight keeps its limits, and each UAV that of its targets over all of its flights."""
+    done = [sum(int(arcs.done[visit]) for visit in route) for route in routes]
+    return all(problem.keeps_limits(row, route) for row, route in enumerate(routes) if route) and all(
+        sum(done[row] for row in rows) <= arcs.most[rows[0]] for rows in _rows_of(arcs).values()
+    )
+
+
+def _rows_of(arcs: Arcs) -> dict[int, list[int]]:
+    """Return the rows of each UAV."""
+    rows_of: dict[int, list[int]] = {}
+    for row, owner in enumerate(arcs.owner.tolist()):
+        rows_of.setdefault(owner, []).append(row)
+    return rows_of
+
+
 def _amount(arc: _Arc, first: FloatArray, onward: FloatArray, end: FloatArray) -> float:
     if not arc.begin:
         return float(first[arc.end - 1])
@@ -342,12 +371,9 @@ def _sum(taken: Sequence[tuple[cp_model.IntVar, int]]) -> cp_model.LinearExprT:
 
 def _alike_neighbours(arcs: Arcs) -> list[tuple[int, int]]:
     """Return pairs of owners whose rows are alike in everything: their routes may be exchanged."""
-    rows_of: dict[int, list[int]] = {}
-    for row, owner in enumerate(arcs.owner.tolist()):
-        rows_of.setdefault(owner, []).append(row)
     alike: dict[tuple[object, ...], int] = {}
     pairs = []
-    for owner, rows in rows_of.items():
+    for owner, rows in _rows_of(arcs).items():
         likeness = tuple(exact.likeness(arcs, row) for row in rows)
         if likeness in alike:
             pairs.append((alike[likeness], owner))
@@ -357,9 +383,7 @@ def _alike_neighbours(arcs: Arcs) -> list[tuple[int, int]]:
 
 def _sorted_rows(problem: Problem, arcs: Arcs, routes: Routes) -> Routes:
     """Return the routes in the order of the model: those of a UAV without empty ones between, UAVs that are alike by duration."""
-    rows_of: dict[int, list[int]] = {}
-    for row, owner in enumerate(arcs.owner.tolist()):
-        rows_of.setdefault(owner, []).append(row)
+    rows_of = _rows_of(arcs)
     flown = {owner: sorted((routes[row] for row in rows), key=lambda route: not route) for owner, rows in rows_of.items()}
     duration_s = dict(zip(rows_of, problem.durations_s(routes), strict=True))
     group_of = {owner: owner for owner in rows_of}

@@ -20,16 +20,19 @@ class SpeedRange(NamedTuple):
     most_mps: float
 
 
-def inspection_speeds(target: Sequence[int | None], speed_of: Mapping[int, float], cruise_speed_mps: float) -> dict[int, float]:
+def inspection_speeds(
+    target: Sequence[int | None], speed_of: Mapping[int, float], cruise_speed_mps: float, *, begins_in_air: bool = False
+) -> dict[int, float]:
     """Return the speeds [m/s] of the legs along the stretches of targets, by the waypoint that they lead to.
 
     target: that of each waypoint, None or below 0 for none; speed_of: the inspection speeds of targets that have one. A UAV that flies
-    slower keeps its own.
+    slower keeps its own. Where the route begins in the air, the UAV may be on the stretch that its first leg leads to: that leg counts.
     """
     found: dict[int, float] = {}
     for number, speed_mps in speed_of.items():
         if speed_mps < cruise_speed_mps and number in target:
             first = target.index(number)
+            first -= 1 if begins_in_air and first == 1 else 0
             last = len(target) - 1 - target[::-1].index(number)
             found |= dict.fromkeys(range(first + 1, last + 1), speed_mps)
     return found

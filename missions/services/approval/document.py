@@ -5,7 +5,6 @@ It is written in a canonical form, whose SHA-256 names it. Everything sent to a 
 
 import hashlib
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -36,6 +35,7 @@ from missions.models import LinkKind, Mission, Route, Waypoint
 from missions.selectors.zones import departure_s, zone_margins
 from missions.services.approval.fence import rally_points, zones_beside
 from missions.services.commands.refused import RefusalReason, Refused
+from missions.services.stored_routes import speeds_of_targets
 from planning.clearance.nearby_zones import zones_near
 from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.request import EndAction, lost_link_from_json, lost_link_to_json, moment_to_json
@@ -136,7 +136,9 @@ def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
         take_off = TakeOff(LonLat(*uav.home.coords[:2]), uav.home_amsl_m)
     sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
     frozen = tuple(_waypoint(waypoint, sequence_of) for waypoint in waypoints)
-    wished = inspection_speeds([own.target for own in frozen], _speed_of(frozen), uav.cruise_speed_mps)
+    wished = inspection_speeds(
+        [own.target for own in frozen], speeds_of_targets(mission), uav.cruise_speed_mps, begins_in_air=route.begun_by is not None
+    )
     wished |= dict.fromkeys(photo_clearances_m(frozen), SPEED_MPS)
     frozen = tuple(own if own.speed_mps is not None else replace(own, speed_mps=wished.get(own.sequence)) for own in frozen)
     return FrozenRoute(
@@ -149,15 +151,6 @@ def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
         departs_s=route.departs_s,
         begun_by=route.begun_by,
     )
-
-
-def _speed_of(waypoints: Sequence[FrozenWaypoint]) -> dict[int, float]:
-    """Return the inspection speeds of the targets that have one."""
-    return {
-        own.target: own.task.speed_mps
-        for own in waypoints
-        if own.target is not None and own.task is not None and own.task.speed_mps is not None
-    }
 
 
 def _waypoint(row: Waypoint, sequence_of: dict[int, int]) -> FrozenWaypoint:

@@ -9,16 +9,20 @@ from django.conf import settings
 
 from inspection.geodesy import LonLat, path_length_m
 from missions.services.replanning.leaving import CannotLeave, Leaving
+from missions.services.stored_routes import speeds_of_targets
 from operation.reasons import Reason
 from planning.energy.conditions import Conditions
 from planning.energy.power import NoHeadway
 from planning.plan import PlannedRoute
 from planning.request import EndAction
 from planning.task import task_from_json
+from planning.trajectory.leg_speeds import inspection_speeds
+from planning.trajectory.photo_flights import photo_legs_of
 from planning.trajectory.route_points import line_of
 from planning.trajectory.sorties import timing_of_route
 from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from planning.views.photo_flight import SPEED_MPS
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +44,9 @@ def continued_route(leaving: Leaving, planned: Mapping[str, Any], order: tuple[i
     begun_by = len(leaving.prefix) - 1
     skipped = 1 if abs(rows[0]["altitude_agl_m"] - leaving.prefix[-1].agl_m) < 0.01 else 0  # the prefix ends there
     points = RoutePoints.of([*leaving.prefix, *(_point(row) for row in rows[skipped:])])
+    speed_of, cruise_mps = speeds_of_targets(leaving.rest.route.mission), leaving.stored.cruise_speed_mps
+    points.speed_mps |= inspection_speeds(points.target.tolist(), speed_of, cruise_mps, begins_in_air=True)
+    points.speed_mps |= dict.fromkeys(np.flatnonzero(photo_legs_of(points)).tolist(), SPEED_MPS)
     heights = [row["altitude_amsl_m"] for row in rows[skipped:]]
     home_m = leaving.rest.take_off_amsl_m
     if leaving.amsl_m is None or home_m is None or any(height_m is None for height_m in heights):

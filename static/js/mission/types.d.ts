@@ -428,6 +428,8 @@ export interface PlanProof {
   job: string | null;
   isStopping: boolean;
   isOver: boolean;
+  /** the search came to its end: it did not fail, and was not cancelled */
+  isFinished: boolean;
   /** share, 0 to 1 */
   progress: number;
   /** a better plan than the one on the page */

@@ -99,10 +99,12 @@ def test_the_speed_is_kept_shown_and_copied(here: World, client: Client) -> None
         ({"kind": "look", "speed_mps": 0}, "line"),
         ({"kind": "look", "speed_mps": 51}, "line"),
         ({"kind": "look", "speed_mps": 4}, "position"),
+        ({"kind": "look", "speed_mps": 4}, "tower"),
     ],
 )
 def test_what_cannot_be_is_refused(here: World, client: Client, task: dict[str, Any], place: str) -> None:
     target = {"asset": here.line.pk, "task": task} | ({"position": [10.008, 56.0]} if place == "position" else {})
+    target |= {"asset": here.towers[0].pk} if place == "tower" else {}
     answer = post(client, "missions", mission_body(target, plan=True))
     assert answer.status_code == 400
     assert any("task" in where for where in answer.json()["error"]["details"])

@@ -13,7 +13,10 @@ from django.test import Client
 from config.private_servers import PROJECT_DIR
 from missions import proof_tasks, tasks
 from missions.models import Mission
-from missions.services.mission_plans import PROOF_TASK
+from missions.services.mission_plans import PROOF_TASK, plannable_request
+from missions.services.plan_proofs import MAX_OPEN_PROOFS, proven_quality
+from missions.services.planning.planner import make_plan
+from planning.request import request_from_json
 from planning.solver.proof import MAX_TARGETS
 from planning.solver.solver import Proof
 from scripts import commands
@@ -129,6 +132,44 @@ def test_a_plan_that_was_replaced_meanwhile_keeps_its_own_quality(here: World, c
     mission.refresh_from_db()
     assert again
     assert "proof" not in (mission.plan_quality or {})
+
+
+def test_a_proof_for_other_uavs_says_nothing_of_the_plan(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    job = proof_of(client, mission)
+    plan = make_plan(request=request_from_json(job.parameters["request"]))
+    bound_m = (mission.total_length_m or 0.0) * 0.9
+    as_proven = plan | {"lower_bound_m": bound_m, "is_proven": False}
+    assert proven_quality(mission, as_proven)["lower_bound_m"] == bound_m
+    before = mission.plan_quality
+    grounded = [{"code": "out_of_service", "uav": 0}]
+    for other in ({"warnings": grounded}, {"ground_revision": 0}, {"lower_bound_m": 3.0 * (mission.total_length_m or 0.0)}):
+        assert proven_quality(mission, as_proven | other) == before
+
+
+def test_a_plan_changed_by_hand_meanwhile_can_be_proven_anew(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    proof_of(client, mission)
+    mission.refresh_from_db()
+    quality = dict(mission.plan_quality or {})
+    mission.plan_quality = quality | {"method": "by hand", "planned": quality}
+    after = proven_quality(mission, make_plan(request=plannable_request(mission=mission)))
+    assert ("proof" in after, "proof" in after["planned"], after["method"]) == (False, False, "by hand")
+
+
+def test_a_copy_has_a_proof_of_its_own(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    job = proof_of(client, mission)
+    copy = post(client, f"missions/{mission.pk}/duplicate").json()
+    assert "proof" not in copy["plan"]
+    assert proof_of(client, Mission.objects.get(pk=copy["id"])).pk != job.pk
+
+
+def test_an_organisation_has_only_so_many_proofs_waiting(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    Job.objects.bulk_create(Job(organisation=mission.organisation, task=PROOF_TASK, parameters={}) for _ in range(MAX_OPEN_PROOFS))
+    answer = asked(client, mission)
+    assert (answer.status_code, answer.json()["error"]["code"]) == (429, "too_many_jobs")
 
 
 def test_a_proof_of_an_older_plan_does_not_begin(here: World, client: Client) -> None:

@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -136,6 +137,27 @@ def test_a_proof_ends_when_it_is_stopped(places: int) -> None:
     searched = solve(problem)
     found = proven(problem, searched.routes, time_s=3_600.0, stop=lambda: next(asked) > 5)  # half a second
     assert found is None or problem.value(found.routes) <= searched.longest_s
+
+
+@pytest.mark.parametrize("objective", [Objective.TOTAL, Objective.MAKESPAN, Objective.TIME])
+def test_the_targets_of_a_uav_are_limited_over_all_of_its_flights(objective: Objective) -> None:
+    problem = plain(16, 2, objective)
+    uavs = tuple(replace(uav, max_range_m=60_000.0, sorties=2, most_targets=5) for uav in problem.uavs)
+    solution = solve(replace(problem, uavs=uavs), search_s=0.1, prover=patient)
+    assert [len(route) for route in solution.routes] == [5, 5]
+
+
+def test_a_plan_that_leaves_out_more_than_might_be_needed_is_not_called_the_best() -> None:
+    """A tour of four is longer than the range by less than the model rounds: CP-SAT takes it, the checks do not."""
+    problem = plain(4, 1, Objective.TOTAL)
+    (tour,) = proven_routes(Arcs.of(problem))[0]
+    length_m = problem.route_length_m(0, tour)
+    tight = replace(problem, uavs=(replace(problem.uavs[0], max_range_m=length_m * (1 + 1e-6 - 3e-8)),))
+    found = proven(tight)
+    best = best_plan(tight)
+    assert found is not None
+    assert all(tight.keeps_limits(uav, route) for uav, route in enumerate(found.routes))
+    assert found.bound is not None or merit(tight, found.routes)[0] == merit(tight, best)[0]
 
 
 def test_too_many_targets_are_left_as_they_are() -> None:

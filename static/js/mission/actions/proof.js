@@ -4,7 +4,7 @@ import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
 import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { differences, isWorse } from "../plan/compare.js";
+import { improvementWords, isWorse } from "../plan/compare.js";
 import { planOf, withResult } from "../plan/plan_results.js";
 import { isPlanCurrent } from "../plan/plan_view.js";
 import { cancelJob } from "./plan_beside.js";
@@ -14,10 +14,19 @@ import { cancelJob } from "./plan_beside.js";
 /** @import { MissionContext, MissionPageState, MissionStore, PlanProof, PlanResult, ShownPlan } from "../types.d.ts" */
 
 const MAX_PROVEN_TARGETS = 40;
+const BY_HAND = "by hand";
 const SEARCHED = "ruin and recreate"; // the method of plans that a proof can better: of others it knows as much already
 
 /** @type {Omit<PlanProof, "mission" | "basis" | "planned_at">} */
-const BEGINNING = { job: null, isStopping: false, isOver: false, progress: 0, better: null, words: "" };
+const BEGINNING = {
+  job: null,
+  isStopping: false,
+  isOver: false,
+  isFinished: false,
+  progress: 0,
+  better: null,
+  words: "",
+};
 
 /**
  * Whether a proof can say more of the plan on the page: stored, searched, and neither proven nor about to change.
@@ -68,7 +77,7 @@ function learn(store, known) {
  */
 function betterWords({ plan, selection }, now, found) {
   if (!plan || plan.basis !== now.basis || !isWorse(plan, planOf(found, selection))) return "";
-  return differences(plan.result, found).join(", ");
+  return improvementWords(plan.result, found);
 }
 
 /**
@@ -105,7 +114,7 @@ export function createProof({ store, page }, show) {
         await get(`/missions/${mission}`, { signal: own.signal })
       );
       if (own.signal.aborted || stored.planned_at !== now.planned_at) return;
-      put(now, { isOver: true });
+      put(now, { isOver: true, isFinished: ended.state === "done" });
       if (stored.plan) learn(store, stored.plan);
       const better = /** @type {PlanResult | null} */ (ended.result && { ...ended.result, job: data.job });
       const words = better ? betterWords(store.state, now, better) : "";
@@ -126,13 +135,19 @@ export function createProof({ store, page }, show) {
     if (!proof) return;
     following?.abort();
     following = null;
-    if (!proof.isOver && store.state.mission?.id === proof.mission) cancelJob(proof.job);
+    const { mission } = store.state;
+    const isReplaced = mission?.id === proof.mission && mission.planned_at !== proof.planned_at;
+    if (!proof.isOver && isReplaced) cancelJob(proof.job);
     store.update({ proof: null });
   }
 
   store.listen(["plan", "planIsStored", "mission", "planning", "saving", "selection", "hand"], (state) => {
     const { plan, mission, proof } = state;
-    const isOfPlan = proof && plan?.basis === proof.basis && mission?.planned_at === proof.planned_at;
+    const isOfPlan =
+      proof &&
+      plan?.basis === proof.basis &&
+      mission?.planned_at === proof.planned_at &&
+      plan.result.method !== BY_HAND;
     if (proof && !(isOfPlan && isPlanCurrent(state))) forget();
     if (!page.canPlan || store.state.proof || !mission?.planned_at || !plan || !canBeProven(state)) return;
     const now = { ...BEGINNING, mission: mission.id, basis: plan.basis, planned_at: mission.planned_at };

@@ -3,7 +3,7 @@
 import { distance_m } from "../../domain/geodesy.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { t, tn } from "../../text.js";
-import { durationText, lengthText } from "../../units.js";
+import { durationText, energyText, lengthText } from "../../units.js";
 import { keyOf, wishesOf } from "../selection.js";
 import { longestDuration_s } from "./plan_view.js";
 
@@ -214,6 +214,30 @@ export function moreOrLess(difference, least, textOf) {
 }
 
 /** @typedef {Pick<Plan, "routes" | "total_length_m" | "unassigned">} Compared */
+/** @typedef {Compared & Pick<Plan, "objective" | "total_duration_s" | "total_energy_wh">} Valued */
+
+const MIN_WH = 1;
+
+/**
+ * What is better in a plan by what it is optimised for, then what else differs; empty where it reaches no more targets and its own figure
+ * is better by seconds, metres or parts of a watt-hour alone.
+ *
+ * @param {Valued} before
+ * @param {Valued} after
+ */
+export function improvementWords(before, after) {
+  const others = differences(before, after);
+  /** @param {"total_duration_s" | "total_energy_wh"} name */
+  const more = (name) => (after[name] ?? 0) - (before[name] ?? 0);
+  const own = {
+    energy: () => moreOrLess(more("total_energy_wh"), MIN_WH, energyText),
+    time: () => t("{time} of flight", { time: moreOrLess(more("total_duration_s"), 30, durationText) }),
+    makespan: () => moreOrLess(longestDuration_s(after) - longestDuration_s(before), 30, durationText),
+    total: () => moreOrLess(after.total_length_m - before.total_length_m, 50, lengthText),
+  }[after.objective]();
+  if (own.includes("=") && after.unassigned.length >= before.unassigned.length) return "";
+  return [...new Set([own, ...others])].filter((words) => !words.includes("=")).join(", ");
+}
 
 /**
  * "+3 min, −1.1 km, 1 target fewer": a plan against the one before.

@@ -4,7 +4,7 @@ import { gsdText } from "../../cameras/words.js";
 import { h, icon } from "../../dom.js";
 import { closeMenu } from "../../page/chrome.js";
 import { t, tn } from "../../text.js";
-import { durationText, speedText } from "../../units.js";
+import { durationText, SPEED_UNIT, speedText } from "../../units.js";
 import { sensorsKnown, wishesOf } from "../selection.js";
 import { canHaveViews, INSPECTION_SPEEDS_MPS, isWhole, MAX_HOLD_S, taskOf } from "../tasks.js";
 import { uavsByName } from "../uavs/mission_uavs.js";
@@ -201,6 +201,9 @@ export function uavMenu(target, actions, selection) {
   );
 }
 
+/** @param {number} speed_mps */
+const withinLimits = (speed_mps) => Math.min(Math.max(speed_mps, INSPECTION_SPEEDS_MPS[0]), INSPECTION_SPEEDS_MPS[1]);
+
 /**
  * The speed along lines, at most; empty: as the UAV flies.
  *
@@ -210,27 +213,32 @@ export function uavMenu(target, actions, selection) {
 function speedForm(tasks, set) {
   const speeds = new Set(tasks.map(({ speed_mps }) => speed_mps ?? null));
   const [least, most] = INSPECTION_SPEEDS_MPS;
+  /** @param {number} mps */
+  const typed = (mps) => String(Math.round((mps / SPEED_UNIT.mps) * 10) / 10);
+  const [{ speed_mps: present }] = tasks;
   const input = h("input", {
     class: "input",
     type: "number",
-    min: String(least),
-    max: String(most),
-    step: "0.5",
+    min: typed(least),
+    max: typed(most),
+    step: "any",
     placeholder: speeds.size === 1 ? t("any") : t("several"),
     title: t("Empty: as the UAV flies"),
-    value: speeds.size === 1 ? String(tasks[0].speed_mps ?? "") : "",
+    value: speeds.size === 1 && present ? typed(present) : "",
     id: "task-speed",
   });
   /** @param {SubmitEvent} event */
   const submit = (event) => {
     event.preventDefault();
-    set({ kind: "look", speed_mps: Number.isNaN(input.valueAsNumber) ? null : input.valueAsNumber });
+    const isEmpty = Number.isNaN(input.valueAsNumber);
+    if (isEmpty && speeds.size > 1) closeMenu();
+    else set({ kind: "look", speed_mps: isEmpty ? null : withinLimits(input.valueAsNumber * SPEED_UNIT.mps) });
   };
   return h(
     "form",
     { class: "task-seconds", onsubmit: submit },
     h("label", { for: "task-speed" }, t("Inspection speed")),
-    h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, "m/s")),
+    h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, SPEED_UNIT.unit)),
     h("button", { class: "button" }, t("Set")),
   );
 }

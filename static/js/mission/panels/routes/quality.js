@@ -78,7 +78,8 @@ function proofOf({ proof }, isProven, actions) {
       h("button", { type: "button", class: "text-button", onclick: actions.showBetterPlan }, t("Show it")),
     );
   if (!proof?.job) return null;
-  if (proof.isOver) return isProven ? null : bound("search", false, t("No better plan was found."));
+  if (proof.isOver)
+    return isProven || !proof.isFinished ? null : bound("search", false, t("No better plan was found."));
   if (proof.isStopping) return null;
   return bound(
     "search",

@@ -168,13 +168,13 @@ function refreshActs(row, head, { keys, words }, acts) {
   const isOne = new Set(tasks.map(taskText)).size === 1;
   const task = isOne ? taskText(tasks[0]) : t("several tasks");
   const title = t("{task}. Change task, priority", { task });
+  button.setAttribute("aria-label", t("Task, priority of {name}: {task}", { name: words, task }));
   if (button.title === title) return;
   button.replaceChildren(
     icon(isOne ? taskIcon(tasks[0]) : "list-checks", "small"),
     h("span", { class: "task-word" }, isOne ? taskWord(tasks[0]) : t("several")),
   );
   button.title = title;
-  button.setAttribute("aria-label", t("Task, priority of {name}: {task}", { name: words, task }));
 }
 
 const taskButton = () =>
