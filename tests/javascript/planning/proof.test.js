@@ -15,6 +15,7 @@ globalThis.document ??= {
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
 globalThis.WebSocket = undefined; // jobs are asked for
 const { canBeProven, createProof } = await import("../../../static/js/mission/actions/proof.js");
+const { improvementWords } = await import("../../../static/js/mission/plan/compare.js");
 const { planOf } = await import("../../../static/js/mission/plan/plan_results.js");
 
 const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `T${id}` }, centre: [9, 50] });
@@ -94,6 +95,22 @@ test("one that is better by metres alone is not offered", async (context) => {
   const { store } = opened(context, serving({ id: "j", state: "done", result: better }, result(40_000)));
   await settle();
   assert.equal(store.state.proof.better, null);
+});
+
+test("by energy and by flying time their own figures decide", async (context) => {
+  const before = result(40_000, { objective: "energy", total_energy_wh: 300, total_duration_s: 900 });
+  const found = { ...before, total_energy_wh: 270, total_length_m: 41_000, method: "CP-SAT" };
+  assert.equal(improvementWords(before, found).replaceAll("\u00a0", " "), "−30 Wh, +1.0 km");
+  assert.equal(improvementWords(before, { ...before, total_energy_wh: 299.5 }), "");
+  const slow = { ...before, objective: "time" };
+  assert.match(improvementWords(slow, { ...slow, total_duration_s: 600 }), /^−5\smin of flight$/);
+  context.mock.restoreAll();
+});
+
+test("a job that is cancelled tells nothing of better plans", async (context) => {
+  const { store } = opened(context, serving({ id: "j", state: "cancelled", result: null }, result(40_000)));
+  await settle();
+  assert.deepEqual([store.state.proof.isOver, store.state.proof.isFinished], [true, false]);
 });
 
 test("a refusal leaves the plan as it is", async (context) => {

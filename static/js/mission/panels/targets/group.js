@@ -4,9 +4,8 @@ import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { labelOfParts } from "../../targets/line_parts.js";
-import { taskIcon, taskText, taskWord } from "../../targets/target_menu.js";
 
-/** @import { PickedTarget, Task } from "../../types.d.ts" */
+/** @import { PickedTarget} from "../../types.d.ts" */
 /** @import { RowState } from "./row.js" */
 
 /** @typedef {{ key: string, run: string, words: string, keys: string[], isOfParts: boolean }} LineGroup `key`: of its first target, `run`: line and route */
@@ -119,7 +118,7 @@ export function createGroups(changed, most, acts) {
  *
  * @typedef {object} GroupActs
  * @property {(keys: string[]) => void} remove
- * @property {(keys: string[]) => Task[]} tasksOf
+ * @property {(keys: string[]) => { image: string, word: string, words: string }} taskOf what is done at all of them
  * @property {(keys: string[], opener: HTMLElement) => void} openTask
  */
 /** @typedef {LineGroup & { isFolded: boolean, toggle: () => void, acts: GroupActs | null, place: RowState["place"] }} ShownGroup */
@@ -164,16 +163,11 @@ function refreshActs(row, head, { keys, words }, acts) {
   removing.onclick = () => acts.remove(keys);
   const button = find(row, ".group-task", HTMLElement);
   button.onclick = () => acts.openTask(keys, button);
-  const tasks = acts.tasksOf(keys);
-  const isOne = new Set(tasks.map(taskText)).size === 1;
-  const task = isOne ? taskText(tasks[0]) : t("several tasks");
+  const { image, word, words: task } = acts.taskOf(keys);
   const title = t("{task}. Change task, priority", { task });
   button.setAttribute("aria-label", t("Task, priority of {name}: {task}", { name: words, task }));
   if (button.title === title) return;
-  button.replaceChildren(
-    icon(isOne ? taskIcon(tasks[0]) : "list-checks", "small"),
-    h("span", { class: "task-word" }, isOne ? taskWord(tasks[0]) : t("several")),
-  );
+  button.replaceChildren(icon(image, "small"), h("span", { class: "task-word" }, word));
   button.title = title;
 }
 

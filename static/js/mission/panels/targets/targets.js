@@ -7,7 +7,7 @@ import { openViewPlan } from "../../../view_plan/panel.js";
 import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan/plan_view.js";
 import { arrivalsOf } from "../../plan/route_times.js";
 import { lockOf, ordersOf, wishedPlace } from "../../targets/locks.js";
-import { targetMenu, uavMenu } from "../../targets/target_menu.js";
+import { targetMenu, taskIcon, taskText, taskWord, uavMenu } from "../../targets/target_menu.js";
 import { isWhole, taskOf } from "../../tasks.js";
 import { createChoosing } from "./choosing.js";
 import { mountChosenBar } from "./chosen_bar.js";
@@ -192,7 +192,12 @@ function groupActs(store, actions, canPlan, planViews) {
   if (!canPlan) return null;
   return {
     remove: actions.removeTargets,
-    tasksOf: (keys) => targetsOf(keys).map(taskOf),
+    taskOf(keys) {
+      const tasks = targetsOf(keys).map(taskOf);
+      return new Set(tasks.map(taskText)).size === 1
+        ? { image: taskIcon(tasks[0]), word: taskWord(tasks[0]), words: taskText(tasks[0]) }
+        : { image: "list-checks", word: t("several"), words: t("several tasks") };
+    },
     openTask(keys, opener) {
       const targets = targetsOf(keys);
       const known = { ...store.state, orders: ordersOf(store.state.plan) };
