@@ -1,6 +1,8 @@
 """Lines that are inspected at a speed of their own: in the plan's times, the approved route, the items of an autopilot, and the API."""
 
+from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,13 +10,21 @@ import pytest
 from django.test import Client
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from inspection.geodesy import distance_m
+from inspection.geodesy import LonLat, distance_m
 from mavlink.mission_items import flight_loads
 from missions.models import Mission
+from missions.services import TargetRequest, create_mission, plan_mission
 from missions.services.approval.document import frozen_route
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
+from planning.problem import Objective
+from planning.request import EndAction
+from planning.task import Task, TaskKind
 from tests.accounts.users import a_user, client_of
+from tests.inspection.ground import tower
 from tests.missions.api import mission_body, post
-from tests.missions.worlds import World, world
+from tests.missions.flights import fleet, ground
+from tests.missions.replanning.in_flight import started
+from tests.missions.worlds import World, power_line, rebuild, request, uav, world
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
@@ -119,3 +129,41 @@ def test_such_a_route_is_not_changed_by_hand(here: World, client: Client) -> Non
     ]
     answer = post(client, f"missions/{mission.pk}/routes/{row.mission_uav.sequence}/waypoints/look", {"waypoints": points})
     assert "inspection speed" in str(answer.json())
+
+
+def test_what_is_left_of_a_line_is_flown_at_its_speed_after_planning_again_in_flight(here: World, tmp_path: Path) -> None:
+    """Each of two UAVs inspects a half of a line. One fails; the other, in the middle of its half, gets the rest, too."""
+    ground(tmp_path / "hill.tif", 100.0)
+    author, uavs = a_user(), fleet("Tern", "Kite")
+    towers = [tower((11.0 + 0.005 * number, 56.0)) for number in range(13)]
+    line = power_line(towers, voltages_v=[110_000])
+    rebuild()
+    ends = [LonLat(*towers[number].centre.coords) for number in (0, 6, 12)]
+    task = Task(TaskKind.LOOK, 0.0, speed_mps=SLOW_MPS)
+    targets = tuple(TargetRequest(asset=line.pk, stretch=part, task=task) for part in pairwise(ends))
+    starts = [(10.999, 55.997), (11.061, 55.997)]
+    asked = tuple(
+        replace(uav(start, name=own.name, end_action=EndAction.RETURN), uav=own.pk) for start, own in zip(starts, uavs, strict=True)
+    )
+    wished = replace(request(uavs=asked, objective=Objective.MAKESPAN), targets=targets)
+    draft = create_mission(organisation=author.organisation, author=author, name="Halves", request=wished)
+    flight = started(author, uavs, plan_mission(mission=draft, actor=author))
+    mark_flight_ended(mission_id=flight.mission.pk, uav_id=uavs[0].pk, flight=1, end=FlightEnd.FAILED)
+    rows = list(flight.route(1).waypoints.select_related("target"))
+    along = [place for place, row in enumerate(rows) if row.target is not None]
+    flight.fly_to(1, along[2], 0.5)
+    offer = flight.offer()
+    assert offer.continuation is not None, offer.outcome
+
+    route = offer.continuation.routes.get(mission_uav__name="Kite")
+    frozen = frozen_route(route, offer.continuation)
+    assert frozen.begun_by is not None
+    assert [own.speed_mps for own in frozen.waypoints[:3]] == [None, SLOW_MPS, SLOW_MPS], "it is on the line already"
+    slow = [(before, after) for before, after in pairwise(frozen.waypoints) if after.speed_mps == SLOW_MPS]
+    flown = [
+        (float(distance_m(np.array([before.position]), np.array([after.position]))[0]), (after.arrival_s or 0) - (before.arrival_s or 0))
+        for before, after in slow
+    ]
+    metres, seconds = np.array(flown).sum(axis=0)
+    assert metres > 3_000
+    assert metres / seconds == pytest.approx(SLOW_MPS, rel=0.05)
