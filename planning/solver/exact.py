@@ -6,10 +6,9 @@ import numpy as np
 from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, Problem, Routes
-from planning.solver.constrained_tours import TourLimits, Tours, limited_tours, settled_tours
 from planning.solver.plan_state import ABSENT
 from planning.solver.problem_arrays import Arcs
-from planning.solver.tours import UavArcs, shortest_tours, walk_back
+from planning.solver.tours import TourLimits, Tours, UavArcs, limited_tours, settled_tours, shortest_tours, walk_back
 
 MAX_TARGETS = 12  # 4,096 sets and 531,441 pairs of a set and a part of it: about a millisecond per UAV
 MAX_REACH_BYTES = 64_000_000  # beyond, the tours of one kind of UAV are in memory at a time, and those that are flown are found again
@@ -21,7 +20,7 @@ def best_plan(problem: Problem) -> Routes:
     Held and Karp's recursion (1962) gives each UAV's shortest route over every set of targets; the sets are then shared out among the
     UAVs, each share the best of all parts of a set. For the longest route this is done twice: for its least duration, then for the
     least total among the plans that are not slower. The alternatives of a target must take equally long to serve. Where more is limited
-    than what the objective counts, see `constrained_tours.py`; where UAVs fly several sorties, each set is first shared out among these.
+    than what the objective counts, see `tours.py`; where UAVs fly several sorties, each set is first shared out among these.
     """
     return best_routes(Arcs.of(problem))
 

@@ -92,7 +92,7 @@ def solve(
     """The best plan found: first it leaves out as little as possible, high priorities last, then the objective counts.
 
     Every route keeps its UAV's limits, and a locked run is flown as it is wished or left out whole. Up to 12 targets, a locked run being
-    one, the plan is the best there is; only where battery or range leave too many tours to weigh (see `constrained_tours.py`) the gap tells
+    one, the plan is the best there is; only where battery or range leave too many tours to weigh (see `tours.py`) the gap tells
     what is not proven. Beyond, the answer depends on the problem and the seed alone as long as `search_s` is 0; with it the search takes
     about so many seconds. `stop` is asked several times a second; once it is true, the best plan so far is returned. Progress tells the
     visits of each UAV over all its sorties. A plan that is not proven is then handed to the prover, if there is one, for PROOF_TO_SEARCH

@@ -9,13 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planning.problem import End, InvalidProblem, Lock, Objective, Problem, Resources, Routes, UavStart, UnassignedReason, Visit, merit
-from planning.solver.constrained_tours import limited_tours
 from planning.solver.exact import best_plan, proven_routes
 from planning.solver.lower_bounds import lower_bound
 from planning.solver.problem_arrays import Arcs
 from planning.solver.reach import needed_range_m, reachable
 from planning.solver.search import best_found
 from planning.solver.solver import never, solve
+from planning.solver.tours import limited_tours
 from tests.cases import long
 from tests.planning.solver.random_problems import best_merit, honours, windy_problem
 
