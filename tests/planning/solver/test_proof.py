@@ -21,7 +21,7 @@ from tests.cases import long
 from tests.planning.solver.random_problems import mixed_problem, windy_problem
 
 seeds = st.integers(0, 1_000_000)
-MANY = [40, *long(1_000)]  # random problems
+MANY = [24, *long(1_000)]  # random problems
 
 
 def bounded(problem: Problem, routes: Routes = (), bound: float = 0.0) -> BoundedPlan:

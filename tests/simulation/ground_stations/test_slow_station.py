@@ -3,6 +3,7 @@
 import socket
 import time
 
+import pytest
 from pymavlink.dialects.v20 import common
 
 from simulation.vehicle_endpoint.launch import Launch
@@ -17,6 +18,7 @@ def heartbeat() -> bytes:
     return bytes(common.MAVLink_heartbeat_message(common.MAV_TYPE_GCS, common.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3).pack(sender))
 
 
+@pytest.mark.long
 def test_simulated_time_falls_to_real_time_while_a_station_is_silent_and_goes_on_after() -> None:
     port = free_port()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as station:
