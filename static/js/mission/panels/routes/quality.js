@@ -9,7 +9,7 @@ import { isPlanCurrent } from "../../plan/plan_view.js";
 import { separationOf } from "../../plan/route_times.js";
 
 /** @import { Child } from "../../../dom.js" */
-/** @import { MissionActions, MissionPageState, ShownPlan } from "../../types.d.ts" */
+/** @import { MissionActions, MissionPageState, PlanProof, ShownPlan } from "../../types.d.ts" */
 
 /** @param {string} image @param {boolean} isFault @param {...Child} words */
 const bound = (image, isFault, ...words) =>
@@ -61,6 +61,25 @@ export function drawQuality(state, plan, { canPlan, actions }) {
   );
 }
 
+/** @param {PlanProof} proof */
+const progressWords = ({ progress }) =>
+  t("Looking for a better plan … {percent}", { percent: percentText(progress * 100) });
+
+/**
+ * Draw what a proof tells. Its progress, which changes every second, leaves the button beside it in place.
+ *
+ * @param {MissionPageState} state
+ * @param {Parameters<typeof drawQuality>[2]} how
+ */
+export function drawProof(state, how) {
+  const { plan, proof } = state;
+  if (!plan) return;
+  const running = byId("plan-quality").querySelector(".proof-progress");
+  if (running && proof?.job && !proof.isOver && !proof.isStopping && !proof.better)
+    running.textContent = progressWords(proof);
+  else drawQuality(state, plan, how);
+}
+
 /**
  * That a better plan is looked for, or was found; null where the plan stays as it is.
  *
@@ -84,7 +103,7 @@ function proofOf({ proof }, isProven, actions) {
   return bound(
     "search",
     false,
-    t("Looking for a better plan … {percent}", { percent: percentText(proof.progress * 100) }),
+    h("span", { class: "proof-progress" }, progressWords(proof)),
     " ",
     h("button", { type: "button", class: "text-button", onclick: actions.stopProof }, t("Stop")),
   );

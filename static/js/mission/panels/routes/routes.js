@@ -6,7 +6,7 @@ import { counterpart } from "../../plan/compare.js";
 import { isPlanCurrent, isPlanInSight, lastPlanOf, pointAlong, routesOf, sentenceOf } from "../../plan/plan_view.js";
 import { batteryOf } from "../../plan/route_times.js";
 import { stripAxis } from "../../strips/span_strip.js";
-import { drawQuality } from "./quality.js";
+import { drawProof, drawQuality } from "./quality.js";
 import { isTight, mainOf, stripRoom } from "./room.js";
 import { routeRow } from "./row.js";
 import { createStrips } from "./strips.js";
@@ -97,7 +97,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
 
   listenToComparing(store, actions, canPlan);
   store.listen(["plan", "selection", "lastPlan", "mission"], draw);
-  store.listen(["proof"], (state) => state.plan && drawQuality(state, state.plan, { canPlan, actions }));
+  store.listen(["proof"], (state) => drawProof(state, { canPlan, actions }));
   store.listen(["why"], (state) => {
     byId("compare-ways").setAttribute("aria-pressed", String(Boolean(state.why?.alternatives)));
     if (Boolean(state.why?.compare) !== dock.classList.contains("comparing")) draw(state);
