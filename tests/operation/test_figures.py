@@ -83,7 +83,7 @@ def test_beat_tells_of_jobs_by_queue_and_of_a_graph_that_is_behind() -> None:
     assert reported[system_metrics.JOBS]["simulation", "queued"] == 1
     assert reported[system_metrics.JOBS]["data", "queued"] == 0
     assert 89 <= reported[system_metrics.JOB_AGE]["planning", "queued"] < 500
-    assert reported[system_metrics.QUEUE].keys() == {("data",), ("flight",), ("planning",), ("simulation",)}
+    assert reported[system_metrics.QUEUE].keys() == {("data",), ("flight",), ("planning",), ("proofs",), ("simulation",)}
     assert reported[system_metrics.GRAPH_BEHIND][()] >= 699
     assert reported.keys() == {one.name for one in system_metrics.DESCRIBED}
 
