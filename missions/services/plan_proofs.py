@@ -14,13 +14,12 @@ from planning.assignment.assignment import UNCOUNTED
 from planning.problem import Objective
 from planning.progress import OnPlanProgress
 from planning.request import request_from_json, request_to_json
-from planning.solver.solver import Prover, Stop
+from planning.solver.solver import MAX_PROVEN_TARGETS, Prover, Stop
 from workspace.jobs.services import JobCancelled, TooManyJobs, create_job, finish_job
 from workspace.models import OPEN_STATES, Job, JobState
 from workspace.tasks import send_job_on_commit
 
 MAX_OPEN_PROOFS = 20  # of an organisation, each about a minute of the one worker
-MAX_PROVEN_TARGETS = 40  # as of planning.solver.proof, which only the worker of this task imports
 BY_HAND = "by hand"
 ROUNDING = 1e-6  # of values and bounds in plans
 _BOUND = {

@@ -205,7 +205,7 @@ def _best(
     for uav in range(uavs):
         number = kind[uav]
         arcs = UavArcs(first_m[uav], back_m[fleet.class_of[uav]], end_m[uav], target, fleet.allowed[uav])
-        if not keeps_reach and number != present:
+        if not keeps_reach and share[uav] and number != present:
             shortest_tours(arcs, reach_m[0], duration_s[number, 0])  # durations are no longer needed
             present = number
         length[uav] = walk_back(share[uav], reach_m[number if keeps_reach else 0], arcs, order[uav])

@@ -20,6 +20,7 @@ PIECES = (1, 2, 4, 8)  # of each line, one after another
 PIECES_SHARE = 0.4  # of the time of a search
 EXACT, SEARCH = "exact", "ruin and recreate"  # what Solution.method says
 
+MAX_PROVEN_TARGETS = 40  # of plans that a prover takes
 PROOF_TO_SEARCH = 6  # a proof takes as many times as long as the search before it
 SEARCH_SHARE = 1 / (1 + PROOF_TO_SEARCH)  # of the time of both
 

@@ -16,8 +16,7 @@ from missions.services.mission_plans import PROOF_TASK, plannable_request
 from missions.services.plan_proofs import MAX_OPEN_PROOFS, proven_quality
 from missions.services.planning.planner import make_plan
 from planning.request import request_from_json
-from planning.solver.proof import MAX_TARGETS
-from planning.solver.solver import Proof
+from planning.solver.solver import MAX_PROVEN_TARGETS, Proof
 from scripts import commands
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, post
@@ -186,7 +185,7 @@ def test_what_cannot_be_proven_is_refused(here: World, client: Client) -> None:
     by_hand = planned(here, client)
     Mission.objects.filter(pk=by_hand.pk).update(plan_quality={**(by_hand.plan_quality or {}), "method": "by hand"})
     draft = Mission.objects.get(pk=post(client, "missions", mission_body({"asset": here.towers[0].pk})).json()["id"])
-    for mission in (proven, by_hand, draft, planned(here, client, targets=MAX_TARGETS + 1)):
+    for mission in (proven, by_hand, draft, planned(here, client, targets=MAX_PROVEN_TARGETS + 1)):
         answer = asked(client, mission)
         assert (answer.status_code, answer.json()["error"]["code"]) == (409, "nothing_to_prove")
     approved = planned(here, client)

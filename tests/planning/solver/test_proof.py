@@ -15,7 +15,7 @@ from planning.solver import exact, proof
 from planning.solver.exact import best_plan, proven_routes
 from planning.solver.problem_arrays import Arcs
 from planning.solver.reach import needed_range_m, reachable
-from planning.solver.solver import BoundedPlan, Proof, never, solve
+from planning.solver.solver import MAX_PROVEN_TARGETS, BoundedPlan, Proof, never, solve
 from planning.solver.sorties import unfolded
 from tests.cases import long
 from tests.planning.solver.random_problems import mixed_problem, windy_problem
@@ -166,4 +166,4 @@ def test_a_plan_that_leaves_out_more_than_might_be_needed_is_not_called_the_best
 
 
 def test_too_many_targets_are_left_as_they_are() -> None:
-    assert proven(plain(proof.MAX_TARGETS + 1, 2, Objective.TOTAL)) is None
+    assert proven(plain(MAX_PROVEN_TARGETS + 1, 2, Objective.TOTAL)) is None
