@@ -6,8 +6,10 @@ from django.db import transaction
 from django.db.models import F, Max, Sum
 
 from missions.models import Base, Mission, MissionState
+from missions.services.manual_edits.edits import BY_HAND
 from missions.services.mission_plans import PROOF_TASK, plannable_request
 from missions.services.missions import MissionChanged, lock_mission
+from missions.services.planning.later_departure import value_of_plan
 from missions.services.planning.planner import make_plan
 from operation.reasons import Reason
 from planning.assignment.assignment import UNCOUNTED
@@ -20,7 +22,6 @@ from workspace.models import OPEN_STATES, Job, JobState
 from workspace.tasks import send_job_on_commit
 
 MAX_OPEN_PROOFS = 20  # of an organisation, each about a minute of the one worker
-BY_HAND = "by hand"
 ROUNDING = 1e-6  # of values and bounds in plans
 _BOUND = {
     Objective.TOTAL: "lower_bound_m", Objective.MAKESPAN: "lower_bound_s", Objective.TIME: "lower_bound_s",
@@ -119,7 +120,7 @@ def proven_quality(mission: Mission, proven: dict[str, Any]) -> dict[str, Any]:
     bound = proven[name]
     if not alike or bound is None or not (quality.get(name) or 0.0) < bound <= value * (1.0 + ROUNDING):
         return quality
-    is_as_good = value <= _value_of(proven, objective) + min(UNCOUNTED[objective], 1.0)
+    is_as_good = value <= value_of_plan(proven) + min(UNCOUNTED[objective], 1.0)
     is_proven = bool(proven["is_proven"]) and is_as_good
     gap = round(max(0.0, 1.0 - bound / value), 6)
     return quality | {name: bound, "gap": 0.0 if is_proven else gap, "is_proven": is_proven, "gap_of": proven["gap_of"]}
@@ -147,15 +148,3 @@ def _value(mission: Mission, objective: Objective) -> float:
     if objective is Objective.TIME:
         return float(flown.aggregate(value=Sum("duration_s"))["value"] or 0.0)
     return float(flown.aggregate(value=Max(F("departs_s") + F("duration_s")))["value"] or 0.0)
-
-
-def _value_of(plan: dict[str, Any], objective: Objective) -> float:
-    """Return the same of a plan in the shape of the API."""
-    if objective is Objective.TOTAL:
-        return float(plan["total_length_m"])
-    if objective is Objective.ENERGY:
-        return float(plan["total_energy_wh"] or 0.0)
-    flown = [route for route in plan["routes"] if route["geometry"] is not None]
-    if objective is Objective.TIME:
-        return float(sum(route["duration_s"] for route in flown))
-    return float(max((route["departs_s"] + route["duration_s"] for route in flown), default=0.0))

@@ -30,6 +30,7 @@ from planning.task import task_to_json
 from planning.trajectory.waypoints import RoutePoints
 from workspace.models import User
 
+BY_HAND = "by hand"  # the method of a plan with a route that was edited
 MAX_STEPS = 5  # that can be undone
 
 
@@ -121,7 +122,7 @@ def _quality(mission: Mission) -> dict[str, Any]:
     by_hand = Q(waypoints__is_by_hand=True) | ~Q(before_hand=[])  # a removed waypoint leaves no other trace
     if not mission.routes.filter(by_hand).exists():
         return dict(planned)
-    return planned | {"is_proven": False, "gap": None, "method": "by hand", "planned": planned}
+    return planned | {"is_proven": False, "gap": None, "method": BY_HAND, "planned": planned}
 
 
 def _refuse(faults: dict[str, str]) -> None:

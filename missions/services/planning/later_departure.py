@@ -53,7 +53,7 @@ def _moments(request: PlanRequest, now: datetime) -> Iterator[datetime]:
 
 def _is_better(request: PlanRequest, plan: Mapping[str, Any], before: Mapping[str, Any]) -> bool:
     missed, missed_before = _missed(request, plan), _missed(request, before)
-    return missed < missed_before or (missed == missed_before and _value(plan) < BETTER * _value(before))
+    return missed < missed_before or (missed == missed_before and value_of_plan(plan) < BETTER * value_of_plan(before))
 
 
 def _missed(request: PlanRequest, plan: Mapping[str, Any]) -> tuple[int, ...]:
@@ -61,7 +61,8 @@ def _missed(request: PlanRequest, plan: Mapping[str, Any]) -> tuple[int, ...]:
     return tuple(sum(priority is level for priority in left_out) for level in sorted(Priority, reverse=True))
 
 
-def _value(plan: Mapping[str, Any]) -> float:
+def value_of_plan(plan: Mapping[str, Any]) -> float:
+    """Return what the objective counts of a plan in the shape of the API: metres, seconds or Wh."""
     reported = _reported(plan)
     names = {
         Objective.TOTAL: "total_length_m", Objective.MAKESPAN: "done_s", Objective.TIME: "total_duration_s",
