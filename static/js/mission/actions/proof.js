@@ -102,7 +102,6 @@ export function createProof({ store, page }, show) {
     following = own;
     try {
       const { data } = /** @type {Answer<JobLink>} */ (await post(`/missions/${mission}/proof`, {}));
-      if (own.signal.aborted) cancelJob(data.job);
       if (own.signal.aborted) return;
       put(now, { job: data.job });
       const ended = await followLive(data.job, {
