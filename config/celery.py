@@ -24,7 +24,7 @@ watch_tasks()
 
 
 PROOF_NICENESS = 15  # proofs give way to every other program
-WITHOUT_WARM_UP = {"data", "flight", "proofs", "simulation"}  # nobody waits for a plan of theirs
+WITHOUT_WARM_UP = {"data", "flight", "proofs", "simulation"}  # no user waits for their plans
 
 
 @worker_before_create_process.connect
@@ -35,7 +35,7 @@ def keep_before_fork(**_: object) -> None:
 
 @worker_process_init.connect
 def warm_up_process(**_: object) -> None:
-    """Load what plans need before a worker's process takes a task, where somebody waits for plans."""
+    """Load what plans need before a worker's process takes a task, where users wait for plans."""
     queues = set(app.amqp.queues.consume_from)
     if queues == {"proofs"}:
         os.nice(PROOF_NICENESS)

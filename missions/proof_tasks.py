@@ -6,7 +6,7 @@ from celery import shared_task
 from django.conf import settings
 
 from missions.services.plan_proofs import prove_for_job
-from missions.tasks import HARD_LIMIT_S, SOFT_LIMIT_S, noted_by, work_on
+from missions.tasks import HARD_LIMIT_S, SOFT_LIMIT_S, noted_by, run_job
 from planning.solver.proof import prove
 from workspace.jobs.job_watch import JobWatch
 from workspace.models import Job
@@ -17,7 +17,6 @@ MAX_PROOF_S = 180.0  # of all plans that are tried on the way; then the best unt
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def prove_mission(job_id: str) -> None:
     """Look for a better plan of a mission, and prove how good its plan is. If stopped, what is known until then is kept."""
-
     until_s = monotonic() + MAX_PROOF_S
 
     def do(job: Job, watch: JobWatch) -> None:
@@ -29,4 +28,4 @@ def prove_mission(job_id: str) -> None:
             search_s=settings.ROUTING_RULES.large_plan_search_s,
         )
 
-    work_on(job_id, do)
+    run_job(job_id, do)

@@ -25,7 +25,7 @@ HARD_LIMIT_S = 600
 SHARES_OF_A_SEARCH = 10  # one of several searches gets this part of the time: a user waits while UAVs fly
 
 
-def work_on(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
+def run_job(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
     """Take the job, do it, and store how it ended. Safe to run twice: a job is held by one worker, and finished once."""
     job = start_job(job_id=job_id)
     if job is None:
@@ -80,7 +80,7 @@ def solve_plan(job_id: str) -> None:
         )
         finish_job(job=job, result=plan, message=_end_message(watch))
 
-    work_on(job_id, do)
+    run_job(job_id, do)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -96,7 +96,7 @@ def plan_mission(job_id: str) -> None:
             message=lambda: _end_message(watch),
         )
 
-    work_on(job_id, do)
+    run_job(job_id, do)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -108,7 +108,7 @@ def replan_mission(job_id: str) -> None:
             job=job, stop=watch.stop, search_s=settings.ROUTING_RULES.large_plan_search_s / SHARES_OF_A_SEARCH, note=watch.note
         )
 
-    work_on(job_id, do)
+    run_job(job_id, do)
 
 
 @shared_task(time_limit=60, soft_time_limit=55)

@@ -195,7 +195,7 @@ def test_what_cannot_be_proven_is_refused(here: World, client: Client) -> None:
 
 
 def test_only_the_worker_for_proofs_loads_ortools() -> None:
-    """What imports the library, what imports that, and so on: nobody imports the task but the worker's option."""
+    """What imports the library, what imports that, and so on: only an option of the worker imports the task."""
     sources = {
         path.relative_to(PROJECT_DIR).as_posix(): path.read_text()
         for folder in ("config", "inspection", "missions", "operation", "planning", "results", "simulation", "telemetry", "workspace")
