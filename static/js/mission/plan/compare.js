@@ -216,7 +216,13 @@ export function moreOrLess(difference, least, textOf) {
 /** @typedef {Pick<Plan, "routes" | "total_length_m" | "unassigned">} Compared */
 /** @typedef {Compared & Pick<Plan, "objective" | "total_duration_s" | "total_energy_wh">} Valued */
 
-const MIN_WH = 1;
+/** @type {Record<Plan["objective"], { least: number, of: (plan: Valued) => number }>} what counts, and less than which is no offer */
+const COUNTED = {
+  total: { least: 50, of: ({ total_length_m }) => total_length_m },
+  makespan: { least: 30, of: longestDuration_s },
+  time: { least: 30, of: ({ total_duration_s }) => total_duration_s ?? 0 },
+  energy: { least: 1, of: ({ total_energy_wh }) => total_energy_wh ?? 0 },
+};
 
 /**
  * What is better in a plan by what it is optimised for, then what else differs; empty where it reaches no more targets and its own figure
@@ -226,17 +232,17 @@ const MIN_WH = 1;
  * @param {Valued} after
  */
 export function improvementWords(before, after) {
-  const others = differences(before, after);
-  /** @param {"total_duration_s" | "total_energy_wh"} name */
-  const more = (name) => (after[name] ?? 0) - (before[name] ?? 0);
+  const { objective } = after;
+  const { least, of } = COUNTED[objective];
+  const more = of(after) - of(before);
+  if (Math.abs(more) < least && after.unassigned.length >= before.unassigned.length) return "";
   const own = {
-    energy: () => moreOrLess(more("total_energy_wh"), MIN_WH, energyText),
-    time: () => t("{time} of flight", { time: moreOrLess(more("total_duration_s"), 30, durationText) }),
-    makespan: () => moreOrLess(longestDuration_s(after) - longestDuration_s(before), 30, durationText),
-    total: () => moreOrLess(after.total_length_m - before.total_length_m, 50, lengthText),
-  }[after.objective]();
-  if (own.includes("=") && after.unassigned.length >= before.unassigned.length) return "";
-  return [...new Set([own, ...others])].filter((words) => !words.includes("=")).join(", ");
+    energy: () => moreOrLess(more, 0, energyText),
+    time: () => t("{time} of flight", { time: moreOrLess(more, 0, durationText) }),
+    makespan: () => "", // among the others, as is the length
+    total: () => "",
+  }[objective]();
+  return [Math.abs(more) < least ? "" : own, ...differences(before, after)].filter(Boolean).join(", ");
 }
 
 /**
