@@ -5,7 +5,7 @@ import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { labelOfParts } from "../../targets/line_parts.js";
 
-/** @import { PickedTarget} from "../../types.d.ts" */
+/** @import { PickedTarget } from "../../types.d.ts" */
 /** @import { RowState } from "./row.js" */
 
 /** @typedef {{ key: string, run: string, words: string, keys: string[], isOfParts: boolean }} LineGroup `key`: of its first target, `run`: line and route */
