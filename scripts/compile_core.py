@@ -1,12 +1,15 @@
 """Compile the planners' core at set-up, so that no request waits for it; does nothing if nothing has changed.
 
-python -m scripts.compile_core [--check]      (--check only reports by its exit code whether there is nothing to do)
+python -m scripts.compile_core [--check | --detach]
+
+--check only reports by its exit code whether there is nothing to do. --detach compiles in the background; a later call waits for that.
 
 If another checkout of this user has compiled the same sources, its code is copied. Otherwise several processes compile parts in parallel.
 numba's folder does not support two writers, which would give different code the same file name. So each process has its own folder, and
 its additions are merged when it is done.
 """
 
+import fcntl
 import importlib
 import os
 import shutil
@@ -14,6 +17,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,6 +26,7 @@ from config.compiled.compiled_core import STAMP, compiled_directory, compiled_st
 from scripts.installation import user_cache
 
 POLL_S = 0.05
+REPORT_INTERVAL_S = 15.0  # between two lines while another process compiles
 SHARED_KIND = "compiled"
 
 
@@ -114,25 +120,65 @@ def take_over(part: Path, before: dict[Path, bytes], folder: Path) -> None:
 
 def remove_older(parent: Path) -> None:
     """Remove code compiled from older sources, except the newest, which running programs may still read."""
-    older = sorted(parent.iterdir(), key=lambda path: path.stat().st_mtime)
+    older = sorted((path for path in parent.iterdir() if path.is_dir()), key=lambda path: path.stat().st_mtime)
     for path in older[:-1]:
         shutil.rmtree(path, ignore_errors=True)
 
 
-def main(arguments: list[str]) -> int:
-    if arguments[:1] == ["--part"]:
-        warm_up(next(part for part in (*PARTS, ALL) if part.name == arguments[1]))
-        return 0
-    folder, stamp = compiled_directory(), compiled_stamp()
-    if is_compiled(folder):
-        return 0
-    if "--check" in arguments:
-        return 1
-    folder.parent.mkdir(parents=True, exist_ok=True)
+def is_core_compiled() -> bool:
+    return is_compiled(compiled_directory())
+
+
+def compile_core() -> None:
+    """Compile the core, or wait for the process that is doing so. Raises CalledProcessError."""
+    parent = compiled_directory().parent
+    parent.mkdir(parents=True, exist_ok=True)
+    with _one_at_a_time(parent):
+        if not is_core_compiled():
+            _compile_or_copy(compiled_directory())
+
+
+def compile_in_background() -> None:
+    """Start another process that compiles the core; its output goes to a file beside the compiled code."""
+    parent = compiled_directory().parent
+    parent.mkdir(parents=True, exist_ok=True)
+    with _log_of(parent).open("w") as log:
+        subprocess.Popen([sys.executable, "-m", "scripts.compile_core"], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+
+
+def _log_of(parent: Path) -> Path:
+    return parent / "log"
+
+
+@contextmanager
+def _one_at_a_time(parent: Path) -> Iterator[None]:
+    """Hold the lock of the compiled code. While another process holds it, print its last line of progress every 15 s."""
+    with (parent / "lock").open("w") as lock:
+        began_s = reported_s = time.monotonic()
+        while not _is_locked(lock.fileno()):
+            time.sleep(POLL_S)
+            now_s = time.monotonic()
+            if now_s - reported_s >= REPORT_INTERVAL_S:
+                reported_s = now_s
+                lines = _log_of(parent).read_text().splitlines() if _log_of(parent).exists() else []
+                print(f"compiled by another process, {now_s - began_s:.0f} s so far{f' ({lines[-1]})' if lines else ''}", flush=True)
+        yield
+
+
+def _is_locked(descriptor: int) -> bool:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _compile_or_copy(folder: Path) -> None:
     remove_older(folder.parent)
     if user_cache.fetch(SHARED_KIND, folder.name, folder) and is_compiled(folder):
         print("taken from another checkout", flush=True)
-        return 0
+        return
+    stamp = compiled_stamp()
     with tempfile.TemporaryDirectory(prefix=".draft-", dir=folder.parent) as draft:
         new = Path(draft) / "new"
         new.mkdir()
@@ -141,6 +187,19 @@ def main(arguments: list[str]) -> int:
         shutil.rmtree(folder, ignore_errors=True)  # compiled by this checkout's programs meanwhile
         new.rename(folder)
     user_cache.publish(folder, SHARED_KIND, folder.name)
+
+
+def main(arguments: list[str]) -> int:
+    if arguments[:1] == ["--part"]:
+        warm_up(next(part for part in (*PARTS, ALL) if part.name == arguments[1]))
+    elif is_core_compiled():
+        return 0
+    elif "--check" in arguments:
+        return 1
+    elif "--detach" in arguments:
+        compile_in_background()
+    else:
+        compile_core()
     return 0
 
 

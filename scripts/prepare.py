@@ -25,6 +25,7 @@ from django.db.migrations.executor import MigrationExecutor
 
 from config import page_bundles, static_files
 from config.private_servers import state_directory
+from scripts.compile_core import compile_core, is_core_compiled
 from scripts.places import DEMO_USER, Places
 from scripts.progress import step
 
@@ -68,6 +69,17 @@ def static_files_meanwhile() -> Iterator[None]:
     if collecting.returncode:
         raise CommandError(f"Static files could not be collected:\n{lines}")
     print(lines, end="", flush=True)
+
+
+def wait_for_core() -> None:
+    """Compile the planners' core, unless the set-up did, or is doing so in the background. Raises CommandError."""
+    if is_core_compiled():
+        return
+    with step("Planners' core, about a minute"):
+        try:
+            compile_core()
+        except subprocess.CalledProcessError as error:
+            raise CommandError(f"The planners' core could not be compiled ({error.cmd})") from error
 
 
 def is_without_ground() -> bool:
@@ -128,6 +140,7 @@ def main() -> None:
         return
     with static_files_meanwhile():
         migrate()
+        wait_for_core()
         load_data(places, options.osm, options.zones)
 
 

@@ -176,13 +176,14 @@ class Installation:
             raise CannotStart("the data could not be prepared; the reason is above")
 
     def _start_programs(self) -> None:
-        """Start the web program and the proxy first, the others once those respond: starting all at once slows each."""
+        """Start the web program and the proxy first, then what pages and UAVs connect to, then the rest: starting all at once slows each."""
         began = time.monotonic()
         print("Programs … ", end="", flush=True)
         self.supervisor.start_programs(FIRST_PROGRAMS)
         self._wait_until_none(lambda: self._not_listening(WEB_PROGRAMS) or reasons_not_ready(self.options.port))
-        self.supervisor.start_programs(name for name in self.program_names if name not in FIRST_PROGRAMS)
+        self.supervisor.start_programs(LINK_PROGRAMS)
         self._wait_until_none(lambda: self._not_listening(LINK_PROGRAMS))
+        self.supervisor.start_programs(name for name in self.program_names if name not in (*FIRST_PROGRAMS, *LINK_PROGRAMS))
         print(f"{time.monotonic() - began:.1f} s", flush=True)
 
     def _wait_until_none(self, reasons_of: Callable[[], list[str]]) -> None:

@@ -24,6 +24,7 @@ from scripts.installation.world_outline import write_outline
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 VENV = PROJECT_DIR / ".venv"
 NODE_MODULES = PROJECT_DIR / "node_modules"
+CORE = "Planners' core"
 WORTH_REPORTING_S = 5.0  # shorter set-ups are not announced
 TERMINAL_INTERVAL_S, LOG_INTERVAL_S = 0.5, 15.0  # between two progress lines
 
@@ -89,10 +90,12 @@ def steps_to_do(purpose: str, base_python: str) -> list[Step]:
         steps.append(Step(libraries, 15.0, lambda step: python_libraries.install(VENV, base_python, lock, wanted)))
     if not _page_libraries_are_there(is_check):
         steps.append(Step("Page libraries", 8.0, lambda step: _install_page_libraries(is_check), [libraries]))
-    if steps_before := [step.text for step in steps if step.text == libraries]:
-        steps.append(Step("Planners' core", 70.0, _compile_core, steps_before))
-    elif subprocess.run([_python(), "-m", "scripts.compile_core", "--check"], cwd=PROJECT_DIR, check=False).returncode:
-        steps.append(Step("Planners' core", 70.0, _compile_core))
+    is_new = any(step.text == libraries for step in steps)
+    if is_new or subprocess.run([_python(), "-m", "scripts.compile_core", "--check"], cwd=PROJECT_DIR, check=False).returncode:
+        if purpose == "run":  # scripts.prepare waits for it, once the database is there
+            steps.append(Step(f"{CORE}, begun in the background", 1.0, lambda step: _compile_core(step, "--detach"), [libraries]))
+        else:
+            steps.append(Step(CORE, 70.0, _compile_core, [libraries]))
     if not _texts_are_compiled():
         steps.append(
             Step(
@@ -168,11 +171,11 @@ def _install_page_libraries(is_check: bool) -> None:
     stamp.write_text("\n".join(_page_stamp(is_check)) + "\n")
 
 
-def _compile_core(step: Step) -> None:
+def _compile_core(step: Step, *options: str) -> None:
     def note(line: str) -> None:
         step.detail = line
 
-    _call([_python(), "-m", "scripts.compile_core"], note)
+    _call([_python(), "-m", "scripts.compile_core", *options], note)
 
 
 # --- all of them ----------------------------------------------------------------------------------------------------------------------
