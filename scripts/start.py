@@ -176,7 +176,7 @@ class Installation:
             raise CannotStart("the data could not be prepared; the reason is above")
 
     def _start_programs(self) -> None:
-        """Start the web program and the proxy first, then what pages and UAVs connect to, then the rest: starting all at once slows each."""
+        """Start web program and proxy, then what pages and UAVs connect to, then the rest: starting all at once slows each."""
         began = time.monotonic()
         print("Programs … ", end="", flush=True)
         self.supervisor.start_programs(FIRST_PROGRAMS)

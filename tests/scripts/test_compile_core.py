@@ -100,12 +100,37 @@ def test_what_programs_have_compiled_meanwhile_is_replaced(tmp_path, monkeypatch
     assert files(folder) == {"ways._path-1.py311.nbi": "whole", "stamp": "stamp"}
 
 
+def test_a_second_process_waits_for_the_first_and_reports_its_progress(tmp_path, monkeypatch, capsys):
+    folder = tmp_path / "compiled" / "digest"
+    folder.parent.mkdir()
+    (folder.parent / "log").write_text("graph, 1 of 4 parts, 23 s\nsearch, 2 of 4 parts, 66 s\n")
+    monkeypatch.setattr(compile_core, "compiled_directory", lambda: folder)
+    monkeypatch.setattr(compile_core, "is_compiled", lambda path: path.exists())
+    monkeypatch.setattr(compile_core, "compile_parts", lambda *arguments: pytest.fail("compiled twice"))
+    monkeypatch.setattr(compile_core, "REPORT_INTERVAL_S", 0.0)
+    first = (
+        "import fcntl, sys, time, pathlib\n"
+        "parent = pathlib.Path(sys.argv[1])\n"
+        "lock = (parent / 'lock').open('w')\n"
+        "fcntl.flock(lock, fcntl.LOCK_EX)\n"
+        "print('locked', flush=True)\n"
+        "time.sleep(0.5)\n"
+        "(parent / 'digest').mkdir()\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", first, str(folder.parent)], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "locked\n"
+        compile_core.compile_core()
+        assert process.wait() == 0
+    assert "(search, 2 of 4 parts, 66 s)" in capsys.readouterr().out
+
+
 def test_of_older_code_the_newest_is_kept_for_programs_that_run(tmp_path):
     for age, name in enumerate(("newest", "older", "oldest")):
         (tmp_path / name).mkdir()
         os.utime(tmp_path / name, (1_000.0 - age, 1_000.0 - age))
+    (tmp_path / "lock").touch()
     compile_core.remove_older(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["newest"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["lock", "newest"]
 
 
 def test_parts_come_after_those_they_call():

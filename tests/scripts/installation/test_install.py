@@ -1,5 +1,6 @@
 """Steps of a set-up run side by side where they can, and the reason of a failure is told."""
 
+import sys
 import threading
 from pathlib import Path
 
@@ -80,6 +81,16 @@ def test_a_failed_step_ends_with_one(monkeypatch):
     monkeypatch.setattr(system_packages, "missing_packages", lambda purpose: [])
     monkeypatch.setattr(install, "steps_to_do", lambda *arguments: [Step("Debian packages", 1.0, fail)])
     assert install.main("run") == 1
+
+
+@pytest.mark.parametrize(("purpose", "options"), [("run", ["--detach"]), ("check", []), ("image", [])])
+def test_only_a_start_leaves_the_core_to_a_process_in_the_background(monkeypatch, purpose, options):
+    commands = []
+    monkeypatch.setattr(install, "_call", lambda command, on_line=None: commands.append(command))
+    monkeypatch.setattr(install.python_libraries, "is_installed", lambda *arguments: False)
+    step = next(step for step in install.steps_to_do(purpose, sys.executable) if step.text.startswith(install.CORE))
+    step.run(step)
+    assert [command[1:] for command in commands] == [["-m", "scripts.compile_core", *options]]
 
 
 @pytest.fixture
