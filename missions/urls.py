@@ -19,11 +19,10 @@ from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.manual_edits import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
-from missions.views.plans import ReachableAssets
+from missions.views.plans import CameraCatalogue, ReachableAssets, ViewPlans
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.selections import SelectionDetail, SelectionList
 from missions.views.starts import MissionPlannedStarts, MissionReturns, PlannedStartsList
-from missions.views.view_plans import CameraCatalogue, ViewPlans
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),

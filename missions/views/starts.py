@@ -11,11 +11,11 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import PlannedStarts
-from missions.serializers.returns import ReturnChecksSerializer
 from missions.serializers.starts import (
     MissionStartsSerializer,
     PlannedStartsListSerializer,
     PlannedStartsSerializer,
+    ReturnChecksSerializer,
     StartsInputSerializer,
     planned_starts_json,
     waiting_json,

@@ -7,7 +7,7 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.fields import PositionField
-from missions.serializers.returns import ReturnCheckSerializer
+from missions.serializers.starts import ReturnCheckSerializer
 from telemetry.selectors.present import PresentPosition
 from telemetry.services.returns.landing_here import LandingHere
 from telemetry.services.returns.present_returns import PresentReturn
