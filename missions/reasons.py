@@ -78,6 +78,15 @@ SENTENCES = register_sentences({
     "looking_for_better_plan": gettext_noop("Looking for a better plan"),
     "proof_ended": gettext_noop("Looked for a better plan"),
     "planned": gettext_noop("Planned"),
+    "campaign_planned": ngettext_noop("Planned %(count)s mission", "Planned %(count)s missions"),
+    "too_many_missions": gettext_noop(
+        "It would take more than %(most)s missions. Allow a greater distance from launch sites, or choose fewer targets."
+    ),
+    "campaign_missions_in_use": ngettext_noop(
+        "%(count)s mission of this campaign is approved or has flown. Its missions stay as they are.",
+        "%(count)s missions of this campaign are approved or have flown. Its missions stay as they are.",
+    ),
+    "campaign_deleted": gettext_noop("The campaign has been deleted."),
     "planning_stopped": gettext_noop("Stopped; the best plan until then is kept"),
     "no_network": gettext_noop("There is no network yet: import infrastructure first, or wait until it has been linked."),
     "zones_changing": gettext_noop("The no-fly zones are being changed just now. Plan again in a moment."),

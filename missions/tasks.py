@@ -8,11 +8,13 @@ from django.conf import settings
 
 from inspection.selectors import NoGraph
 from missions import services
-from missions.models import Mission
+from missions.models import Campaign, Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, replanning
+from missions.services.campaigns import MissionsInUse, plan_campaign_for_job
 from missions.services.commands import commands
 from missions.services.commands.planned_starts import carry_on_planned_starts
 from operation.reasons import Reason
+from planning.campaigns.campaign import MAX_MISSIONS, TooManyMissions
 from planning.progress import OnPlanProgress, PlanProgress
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.jobs.job_watch import JobWatch
@@ -47,6 +49,12 @@ def run_job(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
         fail_job(job=job, code="mission_frozen", message=Reason("mission_frozen"))
     except NothingToPlan:
         fail_job(job=job, code="nothing_to_plan", message=Reason("nothing_to_plan"))
+    except TooManyMissions:
+        fail_job(job=job, code="too_many_missions", message=Reason("too_many_missions", {"most": MAX_MISSIONS}))
+    except MissionsInUse as error:
+        fail_job(job=job, code="missions_in_use", message=Reason("campaign_missions_in_use", {"count": error.count}))
+    except Campaign.DoesNotExist:
+        fail_job(job=job, code="campaign_deleted", message=Reason("campaign_deleted"))
     except SoftTimeLimitExceeded:
         fail_job(job=job, code="took_too_long", message=Reason("no_plan_in_time", {"minutes": SOFT_LIMIT_S // 60}))
     except DATABASE_UNAVAILABLE:
@@ -95,6 +103,16 @@ def plan_mission(job_id: str) -> None:
             search_s=settings.ROUTING_RULES.large_plan_search_s,
             message=lambda: _end_message(watch),
         )
+
+    run_job(job_id, do)
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def plan_campaign(job_id: str) -> None:
+    """Plan launch sites, missions and days of a campaign, and store all of them, or nothing when stopped."""
+
+    def do(job: Job, watch: JobWatch) -> None:
+        plan_campaign_for_job(job=job, stop=watch.stop, on_progress=noted_by(watch))
 
     run_job(job_id, do)
 

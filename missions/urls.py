@@ -13,6 +13,7 @@ from missions.views.approvals import (
     MissionRevoke,
 )
 from missions.views.asset_inspections import AssetMissions, InspectedParts, InspectionsTile
+from missions.views.campaigns import CampaignDetail, CampaignList, CampaignPlan
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.coverage import MissionCoverage, MissionCoverageFile
 from missions.views.events import LiveEvents, MissionEvents
@@ -71,6 +72,9 @@ urlpatterns = [
     path("replan-offers/<uuid:offer_id>/decline", ReplanOfferDecline.as_view(), name="api-replan-offer-decline"),
     path("leg-checks", LegChecks.as_view(), name="api-leg-checks"),
     path("missions/<uuid:mission_id>/history", views.MissionHistory.as_view(), name="api-mission-history"),
+    path("campaigns", CampaignList.as_view(), name="api-campaigns"),
+    path("campaigns/<uuid:campaign_id>", CampaignDetail.as_view(), name="api-campaign"),
+    path("campaigns/<uuid:campaign_id>/plan", CampaignPlan.as_view(), name="api-campaign-plan"),
     path("uavs", views.UavList.as_view(), name="api-uavs"),
     path("uavs/<int:uav_id>", views.UavDetail.as_view(), name="api-uav"),
     path("uavs/<int:uav_id>/restore", views.UavRestore.as_view(), name="api-uav-restore"),

@@ -34,6 +34,8 @@ SENTENCES = register_sentences(
         "camera_pixels_not_square": gettext_noop("With this sensor pixels would not be square. Check its size and the numbers of pixels."),
         # why no route visits a target
         "asset_deleted": gettext_noop("The asset has been deleted since it was picked."),
+        "beyond_launch_sites": gettext_noop("No launch site is near enough: UAVs would have to fly up to %(needed_m)s from one."),
+        "no_launch_site": gettext_noop("There is no place to launch from."),
         "above_height_limit": gettext_noop(
             "It is %(height_m)s high: a UAV would have to fly at %(needed_m)s, above the limit of %(limit_m)s."
         ),

@@ -1,5 +1,6 @@
 """Models of missions, the fleet and commands."""
 
+from missions.models.campaigns import Campaign
 from missions.models.commands import (
     OPEN_COMMANDS,
     Approval,
@@ -38,6 +39,7 @@ __all__ = [
     "WAYPOINT_KINDS",
     "Approval",
     "Base",
+    "Campaign",
     "CommandAxis",
     "CommandKind",
     "CommandPriority",

@@ -112,6 +112,9 @@ class Mission(models.Model):
         related_name="simulated_copies",
         help_text="the mission of which this is a copy with simulated twins of its UAVs",
     )
+    campaign = models.ForeignKey(
+        "Campaign", on_delete=models.SET_NULL, null=True, blank=True, related_name="missions", help_text="that it was planned in"
+    )
     alert_limits = models.JSONField(
         default=dict,
         db_default={},

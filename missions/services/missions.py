@@ -204,7 +204,7 @@ def _differences(before: dict[str, list[str]], after: dict[str, list[str]]) -> d
     return found
 
 
-def delete_mission(*, mission: Mission, actor: User, expected_revision: int | None = None) -> Mission:
+def delete_mission(*, mission: Mission, actor: User | None, expected_revision: int | None = None) -> Mission:
     """Mark the mission deleted; it can be restored."""
     with transaction.atomic():
         locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)

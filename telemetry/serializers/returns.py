@@ -4,13 +4,12 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from rest_framework import serializers
-
 from missions.fields import PositionField
 from missions.serializers.starts import ReturnCheckSerializer
 from telemetry.selectors.present import PresentPosition
 from telemetry.services.returns.landing_here import LandingHere
 from telemetry.services.returns.present_returns import PresentReturn
+from workspace.api import strict_serializers as serializers
 
 
 class PresentPositionSerializer(serializers.Serializer):

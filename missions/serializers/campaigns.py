@@ -1,0 +1,175 @@
+"""Campaigns in the shapes of the API."""
+
+from typing import Any
+
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat
+from missions.fields import PositionField
+from missions.models import Campaign, MissionState
+from missions.models.campaigns import MAX_NAME_LENGTH
+from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer, UavInputSerializer
+from missions.serializers.known_fields import KnownFieldsSerializer
+from missions.serializers.limits import MAX_SORTIES
+from planning.campaigns.campaign import BEYOND_REACH
+from planning.campaigns.crew_days import Crews
+from planning.campaigns.rules import CampaignRules
+from workspace.api import strict_serializers as serializers
+from workspace.api.fields import FiniteFloatField, WhySerializer
+from workspace.jobs.serializers import Declared
+from workspace.reason_texts import with_message
+
+MAX_SITES = 200
+MAX_CREWS = 20
+RULES = CampaignRules(Crews(LonLat(0.0, 0.0)))  # the defaults
+
+
+class LaunchSiteSerializer(KnownFieldsSerializer):
+    name = serializers.CharField(max_length=100, allow_blank=True, required=False, default="")
+    position = PositionField()
+
+
+class CampaignRulesSerializer(KnownFieldsSerializer):
+    """Crews, launch sites, and how far UAVs may be from them. Drives are estimated: the straight line times 1.417 at this speed."""
+
+    start = PositionField(help_text="where crews start and end their days")
+    crews = serializers.IntegerField(min_value=1, max_value=MAX_CREWS, required=False, default=RULES.crews.count)
+    drive_kmh = FiniteFloatField(min_value=5, max_value=130, required=False, default=40.0, help_text="by road, in the mean")
+    set_up_min = FiniteFloatField(
+        min_value=0, max_value=240, required=False, default=15.0, help_text="at each site, to set up and to pack, together"
+    )
+    day_h = FiniteFloatField(min_value=1, max_value=24, required=False, default=8.0, help_text="from leaving the start to being back")
+    reach_m = FiniteFloatField(
+        min_value=100, max_value=50_000, required=False, default=RULES.reach_m, help_text="greatest distance of a target from its site"
+    )
+    flights = serializers.IntegerField(
+        min_value=1, max_value=MAX_SORTIES, required=False, default=RULES.flights, help_text="of each UAV in a mission, at most"
+    )
+    sites = LaunchSiteSerializer(many=True, required=False, default=list, help_text="launch sites to use")
+    proposes_sites = serializers.BooleanField(
+        required=False, default=True, help_text="propose further sites, outside zones, at ends of targets; roads there are not checked"
+    )
+
+    def validate_sites(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        if len(value) > MAX_SITES:
+            raise serializers.ValidationError(_("At most %(most)s launch sites.") % {"most": MAX_SITES})
+        return value
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if not (attrs["sites"] or attrs["proposes_sites"]):
+            raise serializers.ValidationError({"sites": _("State launch sites, or let some be proposed.")})
+        return attrs
+
+
+class CampaignInputSerializer(OptionsSerializer):
+    """A name, UAVs and targets as in a mission, and the rules. UAVs start and end at the launch sites, at any time, without locks."""
+
+    locks: Declared = None
+    departs_at: Declared = None
+    return_to_start: Declared = None
+    name = serializers.CharField(max_length=MAX_NAME_LENGTH)
+    uavs = UavInputSerializer(many=True, allow_empty=False)
+    targets = TargetInputSerializer(many=True, allow_empty=False)
+    rules = CampaignRulesSerializer()
+
+
+class CampaignPlanSerializer(KnownFieldsSerializer):
+    rules = CampaignRulesSerializer()
+
+
+class CampaignMissionSerializer(serializers.Serializer):
+    number = serializers.IntegerField(help_text="in the order of flying, from 1")
+    mission = serializers.UUIDField()
+    state = serializers.ChoiceField(choices=MissionState.choices, allow_null=True, help_text="null: the mission has been deleted")
+    site = serializers.IntegerField(help_text="its place in `sites`, from 0")
+    targets = serializers.IntegerField()
+    flights = serializers.IntegerField()
+    length_m = serializers.FloatField()
+    work_s = serializers.FloatField(help_text="from the first take-off to the last landing")
+    farthest_m = serializers.FloatField(help_text="greatest distance of a route from the site")
+    is_too_long = serializers.BooleanField(help_text="it takes longer than a working day, so it is in none")
+
+
+class CampaignVisitSerializer(serializers.Serializer):
+    """A crew's stay at a site. Times are seconds after it left the start that day."""
+
+    mission = serializers.IntegerField(help_text="number of the mission")
+    drive_m = serializers.FloatField(help_text="to the site, estimated")
+    drive_s = serializers.FloatField()
+    arrives_s = serializers.FloatField()
+    leaves_s = serializers.FloatField()
+
+
+class CampaignDaySerializer(serializers.Serializer):
+    day = serializers.IntegerField(help_text="from 1")
+    crew = serializers.IntegerField(help_text="from 1")
+    visits = CampaignVisitSerializer(many=True)
+    back_m = serializers.FloatField(help_text="the drive back to the start")
+    back_s = serializers.FloatField()
+    ends_s = serializers.FloatField(help_text="when the crew is back")
+
+
+class LeftOutSerializer(serializers.Serializer):
+    target = serializers.IntegerField(help_text="its place in the campaign's targets")
+    reason = serializers.CharField(help_text=f"as in plans, or {BEYOND_REACH}: no launch site is near enough")
+    message = serializers.CharField()
+    why = WhySerializer(many=True)
+
+
+class CampaignScheduleSerializer(serializers.Serializer):
+    sites = LaunchSiteSerializer(many=True, help_text="proposed ones have no name")
+    missions = CampaignMissionSerializer(many=True)
+    days = CampaignDaySerializer(many=True)
+    is_proven = serializers.BooleanField(help_text="no schedule of these missions has fewer days, or as many with less driving")
+    left_out = LeftOutSerializer(many=True, help_text="targets that no mission visits")
+
+
+class CampaignSummarySerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    name = serializers.CharField()
+    author = serializers.CharField(allow_null=True)
+    job = serializers.UUIDField(allow_null=True, help_text="the last job that planned it")
+    target_count = serializers.IntegerField()
+    mission_count = serializers.IntegerField()
+    day_count = serializers.IntegerField()
+    planned_at = serializers.DateTimeField(allow_null=True, help_text="null: not planned yet")
+    updated_at = serializers.DateTimeField()
+
+
+class CampaignSerializer(CampaignSummarySerializer):
+    rules = CampaignRulesSerializer()
+    schedule = CampaignScheduleSerializer(allow_null=True, help_text="null: not planned yet")
+
+
+class CampaignPageSerializer(serializers.Serializer):
+    results = CampaignSummarySerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+def campaign_summary(campaign: Campaign) -> dict[str, Any]:
+    schedule = campaign.schedule or {"missions": [], "days": []}
+    return {
+        "id": str(campaign.pk),
+        "name": campaign.name,
+        "author": campaign.author.username if campaign.author else None,
+        "job": campaign.job and str(campaign.job),
+        "target_count": len(campaign.request["targets"]),
+        "mission_count": len(schedule["missions"]),
+        "day_count": max((day["day"] for day in schedule["days"]), default=0),
+        "planned_at": campaign.planned_at,
+        "updated_at": campaign.updated_at,
+    }
+
+
+def campaign_json(campaign: Campaign) -> dict[str, Any]:
+    schedule = None if campaign.schedule is None else _schedule(campaign, campaign.schedule)
+    return campaign_summary(campaign) | {"rules": campaign.rules, "schedule": schedule}
+
+
+def _schedule(campaign: Campaign, schedule: dict[str, Any]) -> dict[str, Any]:
+    """Return the stored schedule with the present states of its missions, and reasons in the reader's language."""
+    states = {str(key): state for key, state in campaign.missions.filter(deleted_at=None).values_list("pk", "state")}
+    return schedule | {
+        "missions": [mission | {"state": states.get(mission["mission"])} for mission in schedule["missions"]],
+        "left_out": [with_message(item) for item in schedule["left_out"]],
+    }

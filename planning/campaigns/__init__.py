@@ -1,0 +1,1 @@
+"""Missions from several launch sites over several days: where crews launch, and when they drive."""
