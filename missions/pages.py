@@ -5,7 +5,7 @@ from typing import Any
 from django.http import Http404
 
 from inspection.map_pages import map_page
-from missions.models import MissionState
+from missions.models import Campaign, MissionState
 from missions.selectors.missions import mission_bounds, state_of_mission
 from missions.services.missions import EDITABLE
 from workspace.pages import SignedInPage
@@ -39,6 +39,19 @@ class MissionPage(SignedInPage):
             "mission": str(mission_id) if mission_id else None,
             "bounds": mission_bounds(mission_id) if mission_id else None,
         } | map_page(user)
+
+
+class CampaignPage(SignedInPage):
+    """Days, crews and missions of a campaign on the map."""
+
+    template_name = "campaign.html"
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        user = self.request.user
+        campaign_id = kwargs["campaign_id"]
+        if not Campaign.objects.filter(organisation=user.organisation, pk=campaign_id).exists():
+            raise Http404
+        return {"canPlan": user.can_plan, "campaign": str(campaign_id)} | map_page(user)
 
 
 class FleetPage(SignedInPage):

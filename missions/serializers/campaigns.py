@@ -6,11 +6,12 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from missions.fields import PositionField
-from missions.models import Campaign, MissionState
+from missions.models import Campaign, MissionState, Route
 from missions.models.campaigns import MAX_NAME_LENGTH
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer, UavInputSerializer
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_SORTIES
+from missions.serializers.shapes import LineSerializer
 from planning.campaigns.campaign import BEYOND_REACH
 from planning.campaigns.crew_days import Crews
 from planning.campaigns.rules import CampaignRules
@@ -141,6 +142,25 @@ class CampaignSerializer(CampaignSummarySerializer):
     schedule = CampaignScheduleSerializer(allow_null=True, help_text="null: not planned yet")
 
 
+class CampaignRoutePropertiesSerializer(serializers.Serializer):
+    number = serializers.IntegerField(help_text="of its mission")
+    day = serializers.IntegerField(allow_null=True, help_text="null: the mission is in no day")
+    uav = serializers.CharField()
+
+
+class CampaignRouteSerializer(serializers.Serializer):
+    type = serializers.ChoiceField(choices=["Feature"])
+    geometry = LineSerializer()
+    properties = CampaignRoutePropertiesSerializer()
+
+
+class CampaignRoutesSerializer(serializers.Serializer):
+    """Routes of all missions as GeoJSON."""
+
+    type = serializers.ChoiceField(choices=["FeatureCollection"])
+    features = CampaignRouteSerializer(many=True)
+
+
 class CampaignPageSerializer(serializers.Serializer):
     results = CampaignSummarySerializer(many=True)
     next = serializers.CharField(allow_null=True)
@@ -172,4 +192,26 @@ def _schedule(campaign: Campaign, schedule: dict[str, Any]) -> dict[str, Any]:
     return schedule | {
         "missions": [mission | {"state": states.get(mission["mission"])} for mission in schedule["missions"]],
         "left_out": [with_message(item) for item in schedule["left_out"]],
+    }
+
+
+def campaign_routes_json(campaign: Campaign) -> dict[str, Any]:
+    schedule = campaign.schedule or {"missions": [], "days": []}
+    number_of = {row["mission"]: row["number"] for row in schedule["missions"]}
+    day_of = {visit["mission"]: day["day"] for day in schedule["days"] for visit in day["visits"]}
+    rows = Route.objects.filter(mission__campaign=campaign, mission__deleted_at=None, geometry__isnull=False).select_related("mission_uav")
+    numbered = sorted((number_of[str(row.mission_id)], row.mission_uav.sequence, row) for row in rows if str(row.mission_id) in number_of)
+    return {
+        "type": "FeatureCollection",
+        "features": [
+            {
+                "type": "Feature",
+                "geometry": {
+                    "type": "LineString",
+                    "coordinates": [list(point[:2]) for point in row.geometry.coords] if row.geometry else [],
+                },
+                "properties": {"number": number, "day": day_of.get(number), "uav": row.mission_uav.name},
+            }
+            for number, _sequence, row in numbered
+        ],
     }

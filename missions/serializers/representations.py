@@ -38,6 +38,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "return_to_start": mission.return_to_start,
         "departs_at": mission.departs_at,
         "simulates": mission.simulates_id,
+        "campaign": mission.campaign_id,
         "conditions": conditions_to_json(conditions_from_json(mission.conditions)),
         "charging_w": mission.charging_w,
         "lost_link": lost_link_to_json(lost_link_from_json(mission.lost_link)),

@@ -354,6 +354,7 @@ class MissionSerializer(serializers.Serializer):
     return_to_start = serializers.BooleanField()
     departs_at = serializers.DateTimeField(allow_null=True, help_text="planned take-off; null: at any time")
     simulates = serializers.UUIDField(allow_null=True, help_text="the mission of which it is a copy that simulated twins fly")
+    campaign = serializers.UUIDField(allow_null=True, help_text="that it was planned in")
     conditions = ConditionsOutputSerializer()
     charging_w = serializers.FloatField(allow_null=True)
     lost_link = LostLinkOutputSerializer()

@@ -18,8 +18,10 @@ from missions.serializers.campaigns import (
     CampaignInputSerializer,
     CampaignPageSerializer,
     CampaignPlanSerializer,
+    CampaignRoutesSerializer,
     CampaignSerializer,
     campaign_json,
+    campaign_routes_json,
     campaign_summary,
 )
 from missions.serializers.inputs import plan_request
@@ -122,6 +124,12 @@ class CampaignDetail(APIView):
     def delete(self, request: SignedInRequest, campaign_id: UUID) -> Response:
         delete_campaign(campaign=_campaign(request.user, campaign_id), actor=request.user)
         return Response(status=204)
+
+
+class CampaignRoutes(APIView):
+    @extend_schema(operation_id="get_campaign_routes", summary="Routes of a campaign as GeoJSON", responses=CampaignRoutesSerializer)
+    def get(self, request: SignedInRequest, campaign_id: UUID) -> Response:
+        return Response(campaign_routes_json(_campaign(request.user, campaign_id)))
 
 
 class CampaignPlan(_PlansCampaigns):

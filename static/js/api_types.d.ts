@@ -979,6 +979,278 @@ export interface components {
             offset_m?: number[];
             is_thermal?: boolean;
         };
+        Campaign: {
+            /** Format: uuid */
+            id: string;
+            name: string;
+            author: string | null;
+            /**
+             * Format: uuid
+             * @description the last job that planned it
+             */
+            job: string | null;
+            target_count: number;
+            mission_count: number;
+            day_count: number;
+            /**
+             * Format: date-time
+             * @description null: not planned yet
+             */
+            planned_at: string | null;
+            /** Format: date-time */
+            updated_at: string;
+            rules: components["schemas"]["CampaignRules"];
+            /** @description null: not planned yet */
+            schedule: components["schemas"]["CampaignSchedule"] | null;
+        };
+        CampaignDay: {
+            /** @description from 1 */
+            day: number;
+            /** @description from 1 */
+            crew: number;
+            visits: components["schemas"]["CampaignVisit"][];
+            /**
+             * Format: double
+             * @description the drive back to the start
+             */
+            back_m: number;
+            /** Format: double */
+            back_s: number;
+            /**
+             * Format: double
+             * @description when the crew is back
+             */
+            ends_s: number;
+        };
+        /** @description A name, UAVs and targets as in a mission, and the rules. UAVs start and end at the launch sites, at any time, without locks. */
+        CampaignInputRequest: {
+            uavs: components["schemas"]["UavInputRequest"][];
+            targets: components["schemas"]["TargetInputRequest"][];
+            /**
+             * @description total: fly least; makespan: finish soonest; time: least flying time of all; energy: least Wh
+             *
+             *     * `total` - Fly least
+             *     * `makespan` - Even routes
+             *     * `time` - Least flying time
+             *     * `energy` - Least energy
+             */
+            objective?: components["schemas"]["ObjectiveEnum"];
+            conditions?: components["schemas"]["ConditionsRequest"] | null;
+            /**
+             * Format: double
+             * @description power of charging at towers on the way, of UAVs that fly once; null: there is none
+             */
+            charging_w?: number | null;
+            lost_link?: components["schemas"]["LostLinkRequest"] | null;
+            name: string;
+            rules: components["schemas"]["CampaignRulesRequest"];
+        };
+        CampaignMission: {
+            /** @description in the order of flying, from 1 */
+            number: number;
+            /** Format: uuid */
+            mission: string;
+            /**
+             * @description null: the mission has been deleted
+             *
+             *     * `draft` - Draft
+             *     * `planned` - Planned
+             *     * `approved` - Approved
+             *     * `dispatched` - Dispatched
+             *     * `active` - Active
+             *     * `completed` - Completed
+             *     * `aborted` - Aborted
+             *     * `failed` - Failed
+             */
+            state: (components["schemas"]["MissionState"] | components["schemas"]["NullEnum"]) | null;
+            /** @description its place in `sites`, from 0 */
+            site: number;
+            targets: number;
+            flights: number;
+            /** Format: double */
+            length_m: number;
+            /**
+             * Format: double
+             * @description from the first take-off to the last landing
+             */
+            work_s: number;
+            /**
+             * Format: double
+             * @description greatest distance of a route from the site
+             */
+            farthest_m: number;
+            /** @description it takes longer than a working day, so it is in none */
+            is_too_long: boolean;
+        };
+        CampaignPage: {
+            results: components["schemas"]["CampaignSummary"][];
+            next: string | null;
+        };
+        CampaignPlanRequest: {
+            rules: components["schemas"]["CampaignRulesRequest"];
+        };
+        CampaignRoute: {
+            type: components["schemas"]["FeatureType"];
+            geometry: components["schemas"]["Line"];
+            properties: components["schemas"]["CampaignRouteProperties"];
+        };
+        CampaignRouteProperties: {
+            /** @description of its mission */
+            number: number;
+            /** @description null: the mission is in no day */
+            day: number | null;
+            uav: string;
+        };
+        /** @description Routes of all missions as GeoJSON. */
+        CampaignRoutes: {
+            type: components["schemas"]["FeatureCollectionType"];
+            features: components["schemas"]["CampaignRoute"][];
+        };
+        /** @description Crews, launch sites, and how far UAVs may be from them. Drives are estimated: the straight line times 1.417 at this speed. */
+        CampaignRules: {
+            /**
+             * @description where crews start and end their days
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            start: number[];
+            /** @default 1 */
+            crews: number;
+            /**
+             * Format: double
+             * @description by road, in the mean
+             * @default 40
+             */
+            drive_kmh: number;
+            /**
+             * Format: double
+             * @description at each site, to set up and to pack, together
+             * @default 15
+             */
+            set_up_min: number;
+            /**
+             * Format: double
+             * @description from leaving the start to being back
+             * @default 8
+             */
+            day_h: number;
+            /**
+             * Format: double
+             * @description greatest distance of a target from its site
+             * @default 3000
+             */
+            reach_m: number;
+            /**
+             * @description of each UAV in a mission, at most
+             * @default 4
+             */
+            flights: number;
+            /** @description launch sites to use */
+            sites?: components["schemas"]["LaunchSite"][];
+            /**
+             * @description propose further sites, outside zones, at ends of targets; roads there are not checked
+             * @default true
+             */
+            proposes_sites: boolean;
+        };
+        /** @description Crews, launch sites, and how far UAVs may be from them. Drives are estimated: the straight line times 1.417 at this speed. */
+        CampaignRulesRequest: {
+            /**
+             * @description where crews start and end their days
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            start: number[];
+            /** @default 1 */
+            crews: number;
+            /**
+             * Format: double
+             * @description by road, in the mean
+             * @default 40
+             */
+            drive_kmh: number;
+            /**
+             * Format: double
+             * @description at each site, to set up and to pack, together
+             * @default 15
+             */
+            set_up_min: number;
+            /**
+             * Format: double
+             * @description from leaving the start to being back
+             * @default 8
+             */
+            day_h: number;
+            /**
+             * Format: double
+             * @description greatest distance of a target from its site
+             * @default 3000
+             */
+            reach_m: number;
+            /**
+             * @description of each UAV in a mission, at most
+             * @default 4
+             */
+            flights: number;
+            /** @description launch sites to use */
+            sites?: components["schemas"]["LaunchSiteRequest"][];
+            /**
+             * @description propose further sites, outside zones, at ends of targets; roads there are not checked
+             * @default true
+             */
+            proposes_sites: boolean;
+        };
+        CampaignSchedule: {
+            /** @description proposed ones have no name */
+            sites: components["schemas"]["LaunchSite"][];
+            missions: components["schemas"]["CampaignMission"][];
+            days: components["schemas"]["CampaignDay"][];
+            /** @description no schedule of these missions has fewer days, or as many with less driving */
+            is_proven: boolean;
+            /** @description targets that no mission visits */
+            left_out: components["schemas"]["LeftOut"][];
+        };
+        CampaignSummary: {
+            /** Format: uuid */
+            id: string;
+            name: string;
+            author: string | null;
+            /**
+             * Format: uuid
+             * @description the last job that planned it
+             */
+            job: string | null;
+            target_count: number;
+            mission_count: number;
+            day_count: number;
+            /**
+             * Format: date-time
+             * @description null: not planned yet
+             */
+            planned_at: string | null;
+            /** Format: date-time */
+            updated_at: string;
+        };
+        /** @description A crew's stay at a site. Times are seconds after it left the start that day. */
+        CampaignVisit: {
+            /** @description number of the mission */
+            mission: number;
+            /**
+             * Format: double
+             * @description to the site, estimated
+             */
+            drive_m: number;
+            /** Format: double */
+            drive_s: number;
+            /** Format: double */
+            arrives_s: number;
+            /** Format: double */
+            leaves_s: number;
+        };
         Candidate: {
             target: number;
             asset: number | null;
@@ -3112,6 +3384,38 @@ export interface components {
             /** @description of the plan with that departure */
             then: components["schemas"]["PlanTotals"] | null;
         };
+        LaunchSite: {
+            /** @default  */
+            name: string;
+            /**
+             * @description lon, lat [deg], WGS84
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position: number[];
+        };
+        LaunchSiteRequest: {
+            /** @default  */
+            name: string;
+            /**
+             * @description lon, lat [deg], WGS84
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position: number[];
+        };
+        LeftOut: {
+            /** @description its place in the campaign's targets */
+            target: number;
+            /** @description as in plans, or beyond_reach: no launch site is near enough */
+            reason: string;
+            message: string;
+            why: components["schemas"]["Why"][];
+        };
         LegCheck: {
             is_clear: boolean;
             /** @description the zone that the leg meets first */
@@ -3829,6 +4133,11 @@ export interface components {
              * @description the mission of which it is a copy that simulated twins fly
              */
             simulates: string | null;
+            /**
+             * Format: uuid
+             * @description that it was planned in
+             */
+            campaign: string | null;
             conditions: components["schemas"]["ConditionsOutput"];
             /** Format: double */
             charging_w: number | null;
@@ -9540,6 +9849,20 @@ export type Camera = components['schemas']['Camera'];
 export type CameraCatalogue = components['schemas']['CameraCatalogue'];
 export type CameraHeightReference = components['schemas']['CameraHeightReference'];
 export type CameraRequest = components['schemas']['CameraRequest'];
+export type Campaign = components['schemas']['Campaign'];
+export type CampaignDay = components['schemas']['CampaignDay'];
+export type CampaignInputRequest = components['schemas']['CampaignInputRequest'];
+export type CampaignMission = components['schemas']['CampaignMission'];
+export type CampaignPage = components['schemas']['CampaignPage'];
+export type CampaignPlanRequest = components['schemas']['CampaignPlanRequest'];
+export type CampaignRoute = components['schemas']['CampaignRoute'];
+export type CampaignRouteProperties = components['schemas']['CampaignRouteProperties'];
+export type CampaignRoutes = components['schemas']['CampaignRoutes'];
+export type CampaignRules = components['schemas']['CampaignRules'];
+export type CampaignRulesRequest = components['schemas']['CampaignRulesRequest'];
+export type CampaignSchedule = components['schemas']['CampaignSchedule'];
+export type CampaignSummary = components['schemas']['CampaignSummary'];
+export type CampaignVisit = components['schemas']['CampaignVisit'];
 export type Candidate = components['schemas']['Candidate'];
 export type CaptureCollection = components['schemas']['CaptureCollection'];
 export type CaptureFeature = components['schemas']['CaptureFeature'];
@@ -9699,6 +10022,9 @@ export type LastRoute = components['schemas']['LastRoute'];
 export type LastStop = components['schemas']['LastStop'];
 export type LastTarget = components['schemas']['LastTarget'];
 export type LaterDeparture = components['schemas']['LaterDeparture'];
+export type LaunchSite = components['schemas']['LaunchSite'];
+export type LaunchSiteRequest = components['schemas']['LaunchSiteRequest'];
+export type LeftOut = components['schemas']['LeftOut'];
 export type LegCheck = components['schemas']['LegCheck'];
 export type LegChecks = components['schemas']['LegChecks'];
 export type LegChecksInputRequest = components['schemas']['LegChecksInputRequest'];

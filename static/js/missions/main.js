@@ -8,6 +8,7 @@ import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
 import { copyAddress, createActs } from "./acts.js";
 import { countOfFields, isFiltered, nextOrder, PAGE_SIZE } from "./asked.js";
+import { showCampaigns } from "./campaigns.js";
 import { createDemo } from "./demo.js";
 import { createList } from "./list.js";
 import { missionRow, STATES } from "./rows.js";
@@ -382,6 +383,7 @@ store.listen(["byState", "deletedCount", "asked"], drawStates);
 store.listen(["asked", "filters"], drawFields);
 
 demo.listen(() => drawRest(store.state));
+showCampaigns().catch(() => {}); // the list of missions says what is wrong
 Promise.all([load(), list.loadFilters(), demo.load()]).then(() => {
   document.documentElement.dataset.loaded = "true";
   const isAsked = parameters.has("tour");

@@ -12,6 +12,7 @@ import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";
 import { rehearsalOfPlan } from "../flying/briefing.js";
 import { departureText } from "../options/flight_options.js";
+import { planFromLaunchSites, whyNoCampaign } from "../options/launch_sites.js";
 import { factsOf } from "../plan/head_facts.js";
 import { isPlanCurrent, isUnsaved, unassignedOf } from "../plan/plan_view.js";
 import { proposedName } from "../targets/proposed_name.js";
@@ -95,6 +96,7 @@ export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showP
   more.addEventListener("click", () =>
     toggleMenu(more, () =>
       menuOf(t("This mission"), [
+        ...(canPlan ? [campaignItem(store.state)] : []),
         ...itemsFor(store.state.mission, actions, { canPlan, canCopy }),
         ...(canCurate
           ? [{ icon: "zone", label: t("Temporary no-fly zone"), act: () => store.update({ tool: "zone" }) }]
@@ -124,6 +126,7 @@ export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showP
     },
     addUavAt,
     lookForDeparture: () => showLegalTimes(store, actions),
+    planFromLaunchSites: () => void planFromLaunchSites(store.state),
   };
   const keyOfNotices = createNoticesKey(canPlan);
   store.listen(["problem", "conflict", "plan", "planIsStored", "selection", "mission", "isAway"], (state) =>
@@ -133,6 +136,17 @@ export function mountHeader(store, actions, canPlan, { canCopy, canCurate, showP
     if (state.problem || state.conflict) byId("notices").parentElement?.scrollTo({ top: 0 }); // shown above a long list
   });
 }
+
+/** @param {MissionPageState} state @returns {MenuItem} */
+const campaignItem = (state) => ({
+  icon: "calendar-clock",
+  label: t("Plan from launch sites …"),
+  act: () => {
+    const why = whyNoCampaign(state);
+    if (why) toast(why);
+    else void planFromLaunchSites(state);
+  },
+});
 
 /**
  * @param {Mission | null} mission
@@ -148,6 +162,15 @@ function itemsFor(mission, actions, { canPlan, canCopy }) {
       allMissions,
     ];
   return [
+    ...(mission.campaign
+      ? [
+          {
+            icon: "calendar-clock",
+            label: t("Its campaign"),
+            act: () => location.assign(`/campaigns/${mission.campaign}`),
+          },
+        ]
+      : []),
     { icon: "link", label: t("Copy link"), act: () => void copyAddress(mission) },
     { icon: "history", label: t("History"), act: () => void showHistory(mission) },
     ...(canCopy

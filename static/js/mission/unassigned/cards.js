@@ -18,10 +18,12 @@ import { causesOf, causeWords, commonSentence } from "./causes.js";
  * @property {(positions: number[][], zones: number[]) => void} showTogether on the map, with zones lit
  * @property {(position: number[]) => void} addUavAt
  * @property {() => void} lookForDeparture
+ * @property {() => void} planFromLaunchSites
  */
 
 const MAX_LISTED = 20;
 const TOLD_BY_TITLE = ["stands_inside_zone", "runs_through_zone", "lands_through_zone"];
+const BEYOND_BATTERY = ["beyond_range", "beyond_energy"]; // reasons: more launch sites would do
 const NEEDS_UAV = ["not_connected", "no_access_for_uavs"]; // a UAV that starts there would do
 
 /** @param {ShownPlan | null} plan @param {CardContext} context @returns {HTMLElement[]} */
@@ -73,8 +75,8 @@ function whichOf(cause) {
 }
 
 /** @param {Cause} cause @param {CardContext} context @returns {Child[]} */
-function actsOf({ code, targets, zone }, context) {
-  const { actions, canPlan, canCurate, askWhy, showTogether, addUavAt, lookForDeparture } = context;
+function actsOf({ code, reason, targets, zone }, context) {
+  const { actions, canPlan, canCurate, askWhy, showTogether, addUavAt } = context;
   const places = targets.flatMap(({ target }) => (target.centre ? [target.centre] : []));
   const id = zone?.id ?? null;
   const [{ target: first }] = targets;
@@ -82,7 +84,8 @@ function actsOf({ code, targets, zone }, context) {
     places.length > 0 && button(t("Show"), () => showTogether(places, id === null ? [] : [id])),
     targets.length === 1 && button(t("Why?"), () => askWhy({ target: first.key })),
     canPlan && NEEDS_UAV.includes(code) && places.length > 0 && button(t("Add a UAV there"), () => addUavAt(places[0])),
-    canPlan && id !== null && shownWhereTimed(button(t("Look for a better departure"), lookForDeparture), id),
+    canPlan && BEYOND_BATTERY.includes(reason) && button(t("Plan from launch sites"), context.planFromLaunchSites),
+    canPlan && id !== null && shownWhereTimed(button(t("Look for a better departure"), context.lookForDeparture), id),
     canCurate && id !== null && h("a", { class: "text-button", href: `/zones?id=${id}` }, t("Open the zone")),
     canPlan &&
       button(

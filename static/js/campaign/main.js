@@ -1,0 +1,221 @@
+/** The page of a campaign: its days, missions and launch sites, and planning it again with other rules. */
+
+import { ApiError, get, isAbort, post, remove } from "../api.js";
+import { byId, h, icon, setChildren } from "../dom.js";
+import { boxAround } from "../domain/geodesy.js";
+import { mountGroundPage } from "../ground/ground_page.js";
+import { followLive } from "../live/jobs.js";
+import { menuOf, toggleMenu } from "../page/chrome.js";
+import { confirmAct } from "../page/confirm.js";
+import { announce, toast } from "../page/toast.js";
+import { t, tn } from "../text.js";
+import { percentText } from "../units.js";
+import * as layer from "./campaign_layer.js";
+import { openRules } from "./rules_form.js";
+import { dayCards, factsOf, leftOutCard, tooLongCard } from "./schedule_view.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { Campaign, CampaignRoutes, Job } from "../api_types.d.ts" */
+/** @import { Box } from "../map/types.d.ts" */
+/** @import { CampaignPageData } from "./types.d.ts" */
+
+/** @type {Campaign | null} */
+let campaign = null;
+/** @type {CampaignRoutes | null} */
+let routes = null;
+let problem = ""; // of the last job
+/** @type {Job | null} */
+let job = null;
+
+const { page: groundPage, map, layout, open } = mountGroundPage({});
+const page = /** @type {CampaignPageData} */ (groundPage);
+const address = `/campaigns/${page.campaign}`;
+
+/** Read campaign and routes, and draw them. */
+async function load() {
+  const { data } = /** @type {Answer<Campaign>} */ (await get(address));
+  campaign = data;
+  routes = data.schedule ? /** @type {Answer<CampaignRoutes>} */ (await get(`${address}/routes`)).data : null;
+  draw();
+}
+
+/** Follow the job that plans the campaign, if one does. */
+async function followPlanning() {
+  if (!campaign?.job) return;
+  try {
+    job = await followLive(campaign.job, {
+      onProgress(next) {
+        job = next;
+        drawJob();
+      },
+    });
+    problem = job.state === "cancelled" ? t("Planning was stopped. Nothing was stored.") : "";
+  } catch (error) {
+    if (isAbort(error)) return;
+    const isFailed = error instanceof ApiError && !error.isAway && error.status === 500;
+    problem = isFailed ? error.message : "";
+  }
+  job = null;
+}
+
+async function planned() {
+  await followPlanning();
+  const had = campaign?.schedule;
+  await load();
+  if (!had && campaign?.schedule) fit({ animate: true });
+  if (campaign?.schedule && !problem) announce(factsOf(campaign.schedule));
+}
+
+/** @param {{ animate?: boolean }} [options] */
+function fit(options) {
+  const box = boxOf(() => true);
+  if (box) map.fit(box, options);
+  else map.fitAll(options);
+}
+
+/** Around routes and sites of the missions that are wanted. @param {(number: number) => boolean} isWanted @returns {Box | null} */
+function boxOf(isWanted) {
+  const schedule = campaign?.schedule;
+  if (!schedule) return null;
+  const sites = schedule.missions
+    .filter(({ number }) => isWanted(number))
+    .map(({ site }) => schedule.sites[site].position);
+  const lines = (routes?.features ?? []).filter(({ properties }) => isWanted(properties.number));
+  const places = [...sites, ...lines.flatMap(({ geometry }) => geometry.coordinates)];
+  return places.length ? /** @type {Box} */ (boxAround(places)) : null;
+}
+
+/** @type {import("./schedule_view.js").DayActs} */
+const acts = {
+  point: (number) => layer.light(map.map, number),
+  show(number) {
+    const box = boxOf((other) => other === number);
+    if (box) map.fit(box);
+    if (layout.isPhone()) layout.foldSide();
+  },
+};
+
+function draw() {
+  if (!campaign) return;
+  const { name, schedule, target_count } = campaign;
+  document.title = `${name} · Spanwise`;
+  for (const id of ["campaign-name", "bar-title"]) byId(id).textContent = name;
+  byId("page-facts").textContent = schedule ? factsOf(schedule) : tn(target_count, "{count} target", "{count} targets");
+  layer.show(map.map, campaign, routes);
+  const isEmpty = schedule && schedule.missions.length === 0;
+  setChildren(
+    byId("campaign-days"),
+    problemNotice(),
+    leftOutCard(campaign),
+    isEmpty &&
+      h(
+        "div",
+        { class: "empty" },
+        icon("calendar-clock"),
+        h("strong", {}, t("No mission could be planned")),
+        h("p", {}, t("Allow a greater distance from launch sites, or check the no-fly zones.")),
+      ),
+    ...(schedule ? dayCards(schedule, acts) : []),
+    schedule && tooLongCard(schedule, acts),
+    schedule && schedule.days.length > 0 && h("p", { class: "caption campaign-foot" }, footWords(schedule.is_proven)),
+  );
+  drawJob();
+}
+
+/** @param {boolean} isProven */
+const footWords = (isProven) =>
+  `${isProven ? t("Proven: no order of these missions takes fewer days or less driving.") : ""} ${t("Times count from a start at 08:00; drives are estimated from the straight line.")}`.trim();
+
+function problemNotice() {
+  if (!problem) return null;
+  return h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, problem));
+}
+
+function drawJob() {
+  const element = byId("campaign-job");
+  element.hidden = job === null;
+  byId("plan-campaign-again", HTMLButtonElement).disabled = job !== null;
+  if (!job) return;
+  const share = job.progress ?? 0;
+  byId("campaign-job-words").textContent = job.state === "queued" ? t("Waiting for a planner") : job.message;
+  byId("campaign-job-share").textContent = percentText(share * 100);
+  byId("campaign-job-bar").setAttribute("aria-valuenow", String(Math.round(share * 100)));
+  /** @type {HTMLElement} */ (byId("campaign-job-bar").firstElementChild).style.width = `${share * 100}%`;
+}
+
+async function stop() {
+  if (!campaign?.job) return;
+  try {
+    await post(`/jobs/${campaign.job}/cancel`);
+  } catch (error) {
+    toast(/** @type {Error} */ (error).message);
+  }
+}
+
+async function planAgain() {
+  if (!campaign) return;
+  await openRules({
+    title: t("Plan this campaign again"),
+    act: t("Plan"),
+    rules: campaign.rules,
+    async send({ rules }) {
+      const { data } = /** @type {Answer<Campaign>} */ (await post(`${address}/plan`, { rules }));
+      campaign = data;
+      problem = "";
+      draw();
+      void planned();
+    },
+  });
+}
+
+/** @param {HTMLElement} opener */
+async function removeCampaign(opener) {
+  if (!campaign) return;
+  const approved =
+    campaign.schedule?.missions.filter(({ state }) => state && !["draft", "planned"].includes(state)).length ?? 0;
+  const sure = await confirmAct({
+    title: t("Delete {name}?", { name: campaign.name }),
+    lines: [
+      t("Its missions go with it. They can be brought back from the list of missions."),
+      approved > 0 &&
+        tn(
+          approved,
+          "{count} mission is approved or has flown: it stays.",
+          "{count} missions are approved or have flown: they stay.",
+        ),
+    ],
+    act: t("Delete"),
+    isDanger: true,
+    opener,
+  });
+  if (!sure) return;
+  try {
+    await remove(address);
+    location.assign("/");
+  } catch (error) {
+    toast(/** @type {Error} */ (error).message);
+  }
+}
+
+byId("campaign-menu").addEventListener("click", () =>
+  toggleMenu(byId("campaign-menu"), () =>
+    menuOf(t("This campaign"), [
+      ...(page.canPlan
+        ? [{ icon: "trash-2", label: t("Delete"), act: () => void removeCampaign(byId("campaign-menu")) }]
+        : []),
+      { icon: "clipboard-list", label: t("All missions"), act: () => location.assign("/") },
+    ]),
+  ),
+);
+byId("plan-campaign-again").addEventListener("click", () => void planAgain());
+byId("stop-campaign").addEventListener("click", () => void stop());
+
+open({
+  async load() {
+    layer.addTo(map.map, map.view.palette().fonts);
+    map.onRecolour((palette) => layer.recolour(map.map, palette.fonts));
+    await load();
+    fit({ animate: false });
+    void planned();
+  },
+});
