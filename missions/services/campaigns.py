@@ -192,10 +192,12 @@ def _stored(campaign: Campaign, author: User | None, number: int, mission: SiteM
 def _schedule_json(planned: PlannedCampaign, order: list[int], stored: list[Mission]) -> dict[str, Any]:
     """Return sites, missions in this order, days and what is left out; see serializers/campaigns.py."""
     number_of = {place: number for number, place in enumerate(order, start=1)}
+    used = list(dict.fromkeys(planned.missions[place].site for place in order))  # in the order in which they are visited
+    sites = [planned.sites[site] for site in used]
     return {
-        "sites": [{"name": site.name, "position": list(site.position)} for site in planned.sites],
+        "sites": [{"name": site.name, "position": list(site.position)} for site in sites],
         "missions": [
-            _mission_json(planned.missions[place], number_of[place], row, is_too_long=place in planned.schedule.too_long)
+            _mission_json(planned.missions[place], used, number_of[place], row, is_too_long=place in planned.schedule.too_long)
             for place, row in zip(order, stored, strict=True)
         ],
         "days": [
@@ -223,11 +225,11 @@ def _schedule_json(planned: PlannedCampaign, order: list[int], stored: list[Miss
     }
 
 
-def _mission_json(mission: SiteMission, number: int, row: Mission, *, is_too_long: bool) -> dict[str, Any]:
+def _mission_json(mission: SiteMission, sites: list[int], number: int, row: Mission, *, is_too_long: bool) -> dict[str, Any]:
     return {
         "number": number,
         "mission": str(row.pk),
-        "site": mission.site,
+        "site": sites.index(mission.site),
         "targets": len(mission.visited),
         "flights": mission.flights,
         "length_m": round(mission.plan["total_length_m"]),

@@ -119,7 +119,7 @@ export function factsOfUav(
   ];
   const battery_wh = batteryOf(figures);
   if (battery_wh !== null) facts.push(exactEnergyText(battery_wh));
-  if (sorties > 1) facts.push(tn(sorties, "{count} flight", "up to {count} flights"));
+  if (sorties > 1) facts.push(t("up to {count} flights", { count: sorties }));
   if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));
   const ending = returnsToStart ? "return" : end_action;
   const end = ending && END_WORDS[ending];
