@@ -8,6 +8,7 @@ HEADINGS: dict[str, dict[str, TitleAndDescription]] = {
     "Planning": {
         "missions": ("Missions", "Create, plan, rehearse, approve, upload and close missions; their results, logs and history."),
         "plans": ("Plans without a mission", "Plan routes without storing them, with the reasons for routes and unassigned targets."),
+        "campaigns": ("Campaigns", "Missions from several launch sites over several working days, and the days of their crews."),
         "selections": ("Saved selections", "Lists of targets that an organisation keeps under a name."),
         "reachability": ("Reachability", "Which assets the chosen UAVs can inspect, and why not the others."),
         "leg-checks": ("Leg checks", "Check single legs against no-fly zones."),

@@ -69,7 +69,7 @@ class SiteMission:
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class UnvisitedTarget:
     """A target that no mission visits, by its place in the request. reason: as in plans, or BEYOND_REACH. why: Reasons as JSON."""
 
     target: int
@@ -84,7 +84,7 @@ class PlannedCampaign:
     sites: tuple[BaseRequest, ...]
     missions: tuple[SiteMission, ...]
     schedule: Schedule
-    left_out: tuple[LeftOut, ...]
+    left_out: tuple[UnvisitedTarget, ...]
 
 
 def plan_campaign(
@@ -110,11 +110,13 @@ def plan_campaign(
     sites = tuple(given[site] if site < len(given) else BaseRequest("", places[site]) for site in choice.sites)
     missions: list[SiteMission] = []
     left_out = [
-        LeftOut(there[place], BEYOND_REACH, [_why_beyond_reach(nearest_m).to_json()])
+        UnvisitedTarget(there[place], BEYOND_REACH, [_why_beyond_reach(nearest_m).to_json()])
         for place, nearest_m in enumerate(choice.nearest_m)
         if choice.site_of[place] is None
     ]
-    left_out += [LeftOut(target, ASSET_GONE, [Reason("asset_deleted").to_json()]) for target, course in enumerate(courses) if not course]
+    left_out += [
+        UnvisitedTarget(target, ASSET_GONE, [Reason("asset_deleted").to_json()]) for target, course in enumerate(courses) if not course
+    ]
     for number, site in enumerate(sites):
         planned = _AtSite(number, site.position, request, rules, make_plan, stop)
         for found in planned.missions(_targets_of(choice, number, there)):
@@ -147,7 +149,7 @@ class _AtSite:
     stop: Stop
 
     def __post_init__(self) -> None:
-        self.left_out: list[LeftOut] = []
+        self.left_out: list[UnvisitedTarget] = []
 
     def missions(self, targets: Sequence[int]) -> Iterator[SiteMission]:
         """Yield the missions that visit these targets, and collect those that none can visit."""
@@ -163,7 +165,7 @@ class _AtSite:
             yield found
         items = {targets[item["target"]]: item for item in found.plan["unassigned"]}
         later = [target for target, item in items.items() if item["reason"] in REACHABLE_LATER and found.visited]
-        self.left_out += [LeftOut(target, item["reason"], item["why"]) for target, item in items.items() if target not in later]
+        self.left_out += [UnvisitedTarget(target, item["reason"], item["why"]) for target, item in items.items() if target not in later]
         yield from self.missions(later)
 
     def _planned(self, targets: Sequence[int]) -> SiteMission:

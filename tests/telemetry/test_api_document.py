@@ -11,7 +11,7 @@ from django.conf import settings
 from django.utils import timezone
 
 from inspection.tasks import apply_proposal, read_proposal
-from missions.tasks import solve_plan
+from missions.tasks import plan_campaign, solve_plan
 from tests.accounts.users import a_user
 from tests.missions.worlds import world
 from tests.telemetry.live.conftest import closed_endpoint, endpoint, here, live_program, without_redis
@@ -34,6 +34,7 @@ SECTIONS = [
     "Alerts",
     "Event log",
     "Jobs",
+    "Campaigns",
     "Uploads",
     "Live feed",
 ]
@@ -46,7 +47,7 @@ def examples() -> dict[str, str]:
     return {title: code for title, code in found.items() if code}
 
 
-TASKS = {f"{task.__module__}.{task.__name__}": task for task in (solve_plan, read_proposal, apply_proposal)}
+TASKS = {f"{task.__module__}.{task.__name__}": task for task in (solve_plan, plan_campaign, read_proposal, apply_proposal)}
 
 
 def run_here(task: str, *, args: list[str], retry: bool) -> None:
