@@ -119,6 +119,7 @@ class LeftOutSerializer(serializers.Serializer):
 
 class CampaignScheduleSerializer(serializers.Serializer):
     sites = LaunchSiteSerializer(many=True, help_text="proposed ones have no name")
+    blocked_sites = LaunchSiteSerializer(many=True, help_text="stated ones that are not used: they lie inside a no-fly zone, or too near")
     missions = CampaignMissionSerializer(many=True)
     days = CampaignDaySerializer(many=True)
     is_proven = serializers.BooleanField(help_text="no schedule of these missions has fewer days, or as many with less driving")

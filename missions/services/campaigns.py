@@ -20,7 +20,7 @@ from planning.assignment.options import refuse_contradictions
 from planning.campaigns.campaign import PlannedCampaign, SiteMission, Stopped, plan_campaign
 from planning.campaigns.rules import CampaignRules, rules_from_json, rules_to_json
 from planning.progress import OnPlanProgress, PlanProgress
-from planning.request import PlanRequest, request_from_json, request_to_json
+from planning.request import BaseRequest, PlanRequest, request_from_json, request_to_json
 from planning.solver.solver import Stop
 from workspace.audit import record_change
 from workspace.jobs.services import JobCancelled, create_job_within, finish_job
@@ -195,7 +195,8 @@ def _schedule_json(planned: PlannedCampaign, order: list[int], stored: list[Miss
     used = list(dict.fromkeys(planned.missions[place].site for place in order))  # in the order in which they are visited
     sites = [planned.sites[site] for site in used]
     return {
-        "sites": [{"name": site.name, "position": list(site.position)} for site in sites],
+        "sites": [_site_json(site) for site in sites],
+        "blocked_sites": [_site_json(site) for site in planned.blocked],
         "missions": [
             _mission_json(planned.missions[place], used, number_of[place], row, is_too_long=place in planned.schedule.too_long)
             for place, row in zip(order, stored, strict=True)
@@ -223,6 +224,10 @@ def _schedule_json(planned: PlannedCampaign, order: list[int], stored: list[Miss
         "is_proven": planned.schedule.is_proven,
         "left_out": [{"target": one.target, "reason": one.reason, "why": list(one.why)} for one in planned.left_out],
     }
+
+
+def _site_json(site: BaseRequest) -> dict[str, Any]:
+    return {"name": site.name, "position": list(site.position)}
 
 
 def _mission_json(mission: SiteMission, sites: list[int], number: int, row: Mission, *, is_too_long: bool) -> dict[str, Any]:

@@ -79,9 +79,10 @@ class UnvisitedTarget:
 
 @dataclass(frozen=True)
 class PlannedCampaign:
-    """sites: proposed ones have no name. Schedule.days and Schedule.too_long number the missions."""
+    """sites: proposed ones have no name. Schedule.days and Schedule.too_long number the missions. blocked: given sites inside zones."""
 
     sites: tuple[BaseRequest, ...]
+    blocked: tuple[BaseRequest, ...]
     missions: tuple[SiteMission, ...]
     schedule: Schedule
     left_out: tuple[UnvisitedTarget, ...]
@@ -102,6 +103,7 @@ def plan_campaign(
     """
     there = [target for target, course in enumerate(courses) if course]
     given = [site for site in rules.sites if may_launch_at(site.position)]
+    blocked = tuple(site for site in rules.sites if site not in given)
     places = [site.position for site in given]
     if rules.proposes_sites:
         ends = dict.fromkeys(end for target in there for end in (courses[target][0], courses[target][-1]))
@@ -126,7 +128,7 @@ def plan_campaign(
         left_out += planned.left_out
     places_of_missions = [sites[mission.site].position for mission in missions]
     days = schedule(places_of_missions, [mission.work_s for mission in missions], rules.crews, stop=stop)
-    return PlannedCampaign(sites, tuple(missions), days, tuple(sorted(left_out, key=lambda one: one.target)))
+    return PlannedCampaign(sites, blocked, tuple(missions), days, tuple(sorted(left_out, key=lambda one: one.target)))
 
 
 def _why_beyond_reach(nearest_m: float) -> Reason:

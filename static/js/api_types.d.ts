@@ -1207,6 +1207,8 @@ export interface components {
         CampaignSchedule: {
             /** @description proposed ones have no name */
             sites: components["schemas"]["LaunchSite"][];
+            /** @description stated ones that are not used: they lie inside a no-fly zone, or too near */
+            blocked_sites: components["schemas"]["LaunchSite"][];
             missions: components["schemas"]["CampaignMission"][];
             days: components["schemas"]["CampaignDay"][];
             /** @description no schedule of these missions has fewer days, or as many with less driving */

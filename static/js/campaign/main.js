@@ -12,10 +12,10 @@ import { t, tn } from "../text.js";
 import { percentText } from "../units.js";
 import * as layer from "./campaign_layer.js";
 import { openRules } from "./rules_form.js";
-import { dayCards, factsOf, leftOutCard, tooLongCard } from "./schedule_view.js";
+import { blockedCard, dayCards, factsOf, leftOutCard, tooLongCard } from "./schedule_view.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { Campaign, CampaignRoutes, Job } from "../api_types.d.ts" */
+/** @import { Campaign, CampaignRoutes, CampaignRulesRequest, Job } from "../api_types.d.ts" */
 /** @import { Box } from "../map/types.d.ts" */
 /** @import { CampaignPageData } from "./types.d.ts" */
 
@@ -27,7 +27,19 @@ let problem = ""; // of the last job
 /** @type {Job | null} */
 let job = null;
 
-const { page: groundPage, map, layout, open } = mountGroundPage({});
+/** What a click on the map sets: the launch site at this place of the schedule; null: a further one. @type {{ site: number | null } | null} */
+let placing = null;
+
+const {
+  page: groundPage,
+  map,
+  layout,
+  open,
+} = mountGroundPage({
+  click(_thing, position) {
+    if (placing) void place(position);
+  },
+});
 const page = /** @type {CampaignPageData} */ (groundPage);
 const address = `/campaigns/${page.campaign}`;
 
@@ -93,7 +105,51 @@ const acts = {
     if (box) map.fit(box);
     if (layout.isPhone()) layout.foldSide();
   },
+  move: page.canPlan ? startPlacing : null,
 };
+
+/** @param {number | null} site */
+function startPlacing(site) {
+  placing = { site };
+  const banner = byId("map-banner");
+  setChildren(
+    banner,
+    h("span", {}, t("Click on the map where the crew can launch.")),
+    h("button", { type: "button", class: "text-button", onclick: stopPlacing }, t("Cancel")),
+  );
+  banner.hidden = false;
+  map.map.getCanvas().style.cursor = "crosshair";
+  if (layout.isPhone()) layout.foldSide();
+}
+
+function stopPlacing() {
+  placing = null;
+  byId("map-banner").hidden = true;
+  map.map.getCanvas().style.cursor = "";
+}
+
+/** Plan again with the launch sites of the present schedule, one of them moved or added. @param {number[]} position */
+async function place(position) {
+  const site = placing?.site ?? null;
+  stopPlacing();
+  if (!campaign?.schedule) return;
+  const sites = campaign.schedule.sites.map((one, index) => (index === site ? { name: "", position } : one));
+  if (site === null) sites.push({ name: "", position });
+  try {
+    await plan({ ...campaign.rules, sites });
+  } catch (error) {
+    toast(/** @type {Error} */ (error).message);
+  }
+}
+
+/** @param {CampaignRulesRequest} rules */
+async function plan(rules) {
+  const { data } = /** @type {Answer<Campaign>} */ (await post(`${address}/plan`, { rules }));
+  campaign = data;
+  problem = "";
+  draw();
+  void planned();
+}
 
 function draw() {
   if (!campaign) return;
@@ -106,6 +162,7 @@ function draw() {
   setChildren(
     byId("campaign-days"),
     problemNotice(),
+    schedule && blockedCard(schedule),
     leftOutCard(campaign),
     isEmpty &&
       h(
@@ -134,7 +191,7 @@ function problemNotice() {
 function drawJob() {
   const element = byId("campaign-job");
   element.hidden = job === null;
-  byId("plan-campaign-again", HTMLButtonElement).disabled = job !== null;
+  for (const id of ["plan-campaign-again", "add-launch-site"]) byId(id, HTMLButtonElement).disabled = job !== null;
   if (!job) return;
   const share = job.progress ?? 0;
   byId("campaign-job-words").textContent = job.state === "queued" ? t("Waiting for a planner") : job.message;
@@ -158,13 +215,7 @@ async function planAgain() {
     title: t("Plan this campaign again"),
     act: t("Plan"),
     rules: campaign.rules,
-    async send({ rules }) {
-      const { data } = /** @type {Answer<Campaign>} */ (await post(`${address}/plan`, { rules }));
-      campaign = data;
-      problem = "";
-      draw();
-      void planned();
-    },
+    send: ({ rules }) => plan(rules),
   });
 }
 
@@ -208,9 +259,20 @@ byId("campaign-menu").addEventListener("click", () =>
   ),
 );
 byId("plan-campaign-again").addEventListener("click", () => void planAgain());
+byId("add-launch-site").addEventListener("click", () => startPlacing(null));
 byId("stop-campaign").addEventListener("click", () => void stop());
 
 open({
+  bindings: [
+    {
+      keys: ["escape"],
+      act() {
+        if (!placing) return false;
+        stopPlacing();
+        return true;
+      },
+    },
+  ],
   async load() {
     layer.addTo(map.map, map.view.palette().fonts);
     map.onRecolour((palette) => layer.recolour(map.map, palette.fonts));

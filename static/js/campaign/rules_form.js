@@ -46,6 +46,7 @@ export async function openRules({ title, act, name, rules = null, starts = [], s
   const known = [...(await bases()), ...starts];
   const places =
     rules && !known.some(({ position }) => isAt(position, rules.start)) ? [placeOf(rules), ...known] : known;
+  const own = rules?.sites.filter(({ position }) => !known.some((base) => isAt(base.position, position))) ?? [];
   const fields = fieldsOf({ ...USUAL, ...rules }, places, { name, start: rules?.start ?? null });
   const wrong = h("p", { class: "field-error", role: "alert", hidden: true });
   const go = h("button", { class: "button primary" }, act);
@@ -82,14 +83,14 @@ export async function openRules({ title, act, name, rules = null, starts = [], s
 
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
-    if (!fields.uses_bases.read() && !fields.proposes_sites.read()) {
+    if (!fields.uses_bases.read() && !fields.proposes_sites.read() && own.length === 0) {
       announce(t("Without bases, launch sites must be proposed."));
       return;
     }
     announce("");
     go.setAttribute("aria-busy", "true");
     try {
-      await send({ name: nameField.read(), rules: statedRules(fields, places, known) });
+      await send({ name: nameField.read(), rules: statedRules(fields, places, { known, own }) });
       dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -153,17 +154,27 @@ function fieldsOf(values, places, { name, start: startsAt }) {
       unit: LONG_UNIT.unit === "km" ? "km/h" : "mph",
       hint: t("Drives are estimated from the straight line."),
     }),
-    uses_bases: switchField("uses_bases", t("Launch from bases too"), values.sites.length > 0 || !startsAt, {
-      hint: t("Where one is in reach of the targets."),
-    }),
+    uses_bases: switchField(
+      "uses_bases",
+      t("Launch from bases too"),
+      !startsAt || values.sites.some(({ name: own }) => own !== ""),
+      {
+        hint: t("Where one is in reach of the targets."),
+      },
+    ),
     proposes_sites: switchField("proposes_sites", t("Propose launch sites"), values.proposes_sites, {
       hint: t("At towers, outside no-fly zones. Check the access by road yourself."),
     }),
   };
 }
 
-/** @param {ReturnType<typeof fieldsOf>} fields @param {Place[]} places @param {Place[]} sites @returns {CampaignRulesRequest} */
-const statedRules = (fields, places, sites) => ({
+/**
+ * @param {ReturnType<typeof fieldsOf>} fields
+ * @param {Place[]} places where crews can start
+ * @param {{ known: Place[], own: Place[] }} sites bases, which the user may leave out, and launch sites set on the map
+ * @returns {CampaignRulesRequest}
+ */
+const statedRules = (fields, places, { known, own }) => ({
   start: places[Number(fields.start.read() ?? 0)].position,
   crews: fields.crews.read() ?? USUAL.crews,
   day_h: fields.day_h.read() ?? USUAL.day_h,
@@ -171,7 +182,7 @@ const statedRules = (fields, places, sites) => ({
   flights: fields.flights.read() ?? USUAL.flights,
   set_up_min: fields.set_up_min.read() ?? USUAL.set_up_min,
   drive_kmh: fields.drive_kmh.read() ?? USUAL.drive_kmh,
-  sites: fields.uses_bases.read() ? sites : [],
+  sites: [...(fields.uses_bases.read() ? known : []), ...own],
   proposes_sites: fields.proposes_sites.read(),
 });
 

@@ -2,11 +2,16 @@
 
 import { h, icon } from "../dom.js";
 import { t, tn } from "../text.js";
-import { durationText, lengthText } from "../units.js";
+import { coordinateText, durationText, lengthText } from "../units.js";
 
 /** @import { Campaign, CampaignDay, CampaignMission, CampaignSchedule } from "../api_types.d.ts" */
 
-/** @typedef {{ point: (number: number | null) => void, show: (number: number) => void }} DayActs a mission by its number */
+/**
+ * @typedef {object} DayActs
+ * @property {(number: number | null) => void} point at a mission by its number
+ * @property {(number: number) => void} show a mission on the map
+ * @property {((site: number) => void) | null} move a launch site by its place; null: the user cannot
+ */
 
 const DAY_BEGINS_H = 8;
 const COLOURS = 8; // of routes
@@ -139,18 +144,18 @@ function missionLine(schedule, mission, acts, times) {
       ),
       h("small", {}, figures),
     ),
-    h(
-      "button",
-      {
-        type: "button",
-        class: "icon-button tight",
-        "aria-label": t("Show {name} on the map", { name }),
-        onclick: () => acts.show(number),
-      },
-      icon("map-pin", "small"),
-    ),
+    acts.move && iconButton("move-3d", t("Move {name}", { name }), () => acts.move?.(mission.site)),
+    iconButton("map-pin", t("Show {name} on the map", { name }), () => acts.show(number)),
   );
 }
+
+/** @param {string} image @param {string} label @param {() => void} act */
+const iconButton = (image, label, act) =>
+  h(
+    "button",
+    { type: "button", class: "icon-button tight", "aria-label": label, title: label, onclick: act },
+    icon(image, "small"),
+  );
 
 /** Missions that no working day holds. @param {CampaignSchedule} schedule @param {DayActs} acts */
 export function tooLongCard(schedule, acts) {
@@ -167,6 +172,18 @@ export function tooLongCard(schedule, acts) {
       missions.map((mission) => missionLine(schedule, mission, acts, "")),
     ),
   );
+}
+
+/** Stated launch sites inside zones. @param {CampaignSchedule} schedule */
+export function blockedCard({ blocked_sites: blocked }) {
+  if (!blocked?.length) return null;
+  const words = tn(
+    blocked.length,
+    "{count} launch site is not used: it lies in a no-fly zone, or too near to one.",
+    "{count} launch sites are not used: they lie in a no-fly zone, or too near to one.",
+  );
+  const names = blocked.map(({ name, position }) => name || coordinateText(position)).join(", ");
+  return h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, words, ` ${names}`));
 }
 
 /** Targets that no mission visits, by cause. @param {Campaign} campaign */

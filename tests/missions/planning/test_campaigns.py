@@ -141,6 +141,7 @@ def test_no_site_is_inside_a_zone(here, client):
         zone_around((lon, LINE_LAT), 0.0005, with_graph=lon == TOWER_LONS[4])
     schedule = planned(client, body(here, sites=[{"name": "Inside", "position": [TOWER_LONS[0], LINE_LAT]}]))["schedule"]
     assert all(site["name"] != "Inside" for site in schedule["sites"])
+    assert [site["name"] for site in schedule["blocked_sites"]] == ["Inside"]
     places = [site["position"] for site in schedule["sites"]]
     assert places
     assert all(distance_m(place, (lon, LINE_LAT)) > 30.0 for place in places for lon in TOWER_LONS[::2])
