@@ -35,6 +35,7 @@ SENTENCES = register_sentences(
         # why no route visits a target
         "asset_deleted": gettext_noop("The asset has been deleted since it was picked."),
         "beyond_launch_sites": gettext_noop("No launch site is near enough: UAVs would have to fly up to %(needed_m)s from one."),
+        "drive_takes_day": gettext_noop("The drive to launch sites near it and back takes the whole working day."),
         "no_launch_site": gettext_noop("There is no place to launch from."),
         "above_height_limit": gettext_noop(
             "It is %(height_m)s high: a UAV would have to fly at %(needed_m)s, above the limit of %(limit_m)s."

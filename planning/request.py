@@ -195,6 +195,8 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "performance": performance_to_json(uav.performance),
                 "sorties": uav.sorties,
                 "home": None if uav.home is None else list(uav.home),
+                "own_figures": list(uav.own_figures),
+                "fleet_figures": dict(uav.fleet_figures),
             }
             for uav in request.uavs
         ],
@@ -207,6 +209,8 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "priority": priority_to_json(target.priority),
                 "uav": target.uav,
                 "sensor": target.sensor,
+                "external_id": target.external_id,
+                "attributes": dict(target.attributes),
             }
             for target in request.targets
         ],
@@ -239,6 +243,8 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 performance=performance_from_json(uav.get("performance", {})),
                 sorties=uav.get("sorties", 1),
                 home=LonLat(*uav["home"]) if uav.get("home") else None,
+                own_figures=tuple(uav.get("own_figures", ())),
+                fleet_figures=uav.get("fleet_figures", {}),
             )
             for uav in value["uavs"]
         ),
@@ -251,6 +257,8 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 priority=priority_from_json(target.get("priority", "normal")),
                 uav=target.get("uav", ""),
                 sensor=target.get("sensor", ""),
+                external_id=target.get("external_id", ""),
+                attributes=target.get("attributes", {}),
             )
             for target in value["targets"]
         ),

@@ -34,7 +34,13 @@ class CampaignRulesSerializer(KnownFieldsSerializer):
     """Crews, launch sites, and how far UAVs may be from them. Drives are estimated: the straight line times 1.417 at this speed."""
 
     start = PositionField(help_text="where crews start and end their days")
-    crews = serializers.IntegerField(min_value=1, max_value=MAX_CREWS, required=False, default=RULES.crews.count)
+    crews = serializers.IntegerField(
+        min_value=1,
+        max_value=MAX_CREWS,
+        required=False,
+        default=RULES.crews.count,
+        help_text="each with such UAVs; those of the request are the first crew's, the missions of the others name no stored UAV",
+    )
     drive_kmh = FiniteFloatField(min_value=5, max_value=130, required=False, default=40.0, help_text="by road, in the mean")
     set_up_min = FiniteFloatField(
         min_value=0, max_value=240, required=False, default=15.0, help_text="at each site, to set up and to pack, together"
@@ -44,11 +50,17 @@ class CampaignRulesSerializer(KnownFieldsSerializer):
         min_value=100, max_value=50_000, required=False, default=RULES.reach_m, help_text="greatest distance of a target from its site"
     )
     flights = serializers.IntegerField(
-        min_value=1, max_value=MAX_SORTIES, required=False, default=RULES.flights, help_text="of each UAV in a mission, at most"
+        min_value=1,
+        max_value=MAX_SORTIES,
+        required=False,
+        default=RULES.flights,
+        help_text="of each UAV in a mission, at most, each on a full battery",
     )
     sites = LaunchSiteSerializer(many=True, required=False, default=list, help_text="launch sites to use")
     proposes_sites = serializers.BooleanField(
-        required=False, default=True, help_text="propose further sites, outside zones, at ends of targets; roads there are not checked"
+        required=False,
+        default=True,
+        help_text="propose further sites 40 m beside ends of targets, outside zones, clear of towers and wires; roads are not checked",
     )
 
     def validate_sites(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -87,7 +99,8 @@ class CampaignMissionSerializer(serializers.Serializer):
     flights = serializers.IntegerField()
     length_m = serializers.FloatField()
     work_s = serializers.FloatField(help_text="from the first take-off to the last landing")
-    farthest_m = serializers.FloatField(help_text="greatest distance of a route from the site")
+    farthest_m = serializers.FloatField(help_text="greatest distance of a route from the site; it may lie beyond the reach of targets")
+    warnings = serializers.IntegerField(help_text="number of warnings of its plan")
     is_too_long = serializers.BooleanField(help_text="it takes longer than a working day, so it is in none")
 
 
@@ -168,15 +181,14 @@ class CampaignPageSerializer(serializers.Serializer):
 
 
 def campaign_summary(campaign: Campaign) -> dict[str, Any]:
-    schedule = campaign.schedule or {"missions": [], "days": []}
     return {
         "id": str(campaign.pk),
         "name": campaign.name,
         "author": campaign.author.username if campaign.author else None,
         "job": campaign.job and str(campaign.job),
-        "target_count": len(campaign.request["targets"]),
-        "mission_count": len(schedule["missions"]),
-        "day_count": max((day["day"] for day in schedule["days"]), default=0),
+        "target_count": campaign.target_count,
+        "mission_count": campaign.mission_count,
+        "day_count": campaign.day_count,
         "planned_at": campaign.planned_at,
         "updated_at": campaign.updated_at,
     }

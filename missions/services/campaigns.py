@@ -7,28 +7,28 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
-from missions.models import Campaign, Mission, MissionState
+from inspection.models import Asset
+from missions.models import Campaign, Mission, Uav
 from missions.models.missions import MAX_NAME_LENGTH
 from missions.selectors.planning_context import current_airspace
 from missions.selectors.resolved_targets import resolved_targets
 from missions.services.mission_plans import NothingToPlan, store_plan
-from missions.services.missions import create_mission, delete_mission
+from missions.services.missions import EDITABLE, create_mission, delete_mission
 from missions.services.planning.planner import make_plan
 from operation.reasons import Reason
-from planning.airspace import zone_at
 from planning.assignment.options import refuse_contradictions
-from planning.campaigns.campaign import PlannedCampaign, SiteMission, Stopped, plan_campaign
+from planning.campaigns.campaign import PlannedCampaign, SiteMission, Stopped, at_any_site, plan_campaign
 from planning.campaigns.rules import CampaignRules, rules_from_json, rules_to_json
 from planning.progress import OnPlanProgress, PlanProgress
-from planning.request import BaseRequest, PlanRequest, request_from_json, request_to_json
+from planning.request import BaseRequest, PlanRequest, UavRequest, request_from_json, request_to_json
 from planning.solver.solver import Stop
 from workspace.audit import record_change
-from workspace.jobs.services import JobCancelled, create_job_within, finish_job
+from workspace.jobs.services import JobCancelled, TooManyJobs, cancel_job, create_job, finish_job
 from workspace.models import OPEN_STATES, Job, Organisation, User
 from workspace.tasks import send_job_on_commit
 
 CAMPAIGN_TASK = "missions.tasks.plan_campaign"
-MAX_OPEN_CAMPAIGNS = 3  # of a user: each plans many missions
+MAX_OPEN_CAMPAIGNS = 2  # of an organisation: each plans many missions
 SEARCH_S = 1.0  # for each mission
 
 
@@ -51,11 +51,16 @@ def create_campaign(*, organisation: Organisation, author: User, name: str, requ
     """
     if not (request.uavs and request.targets):
         raise NothingToPlan
-    refuse_contradictions(request)
+    refuse_contradictions(at_any_site(request, rules))
     resolved_targets(request.targets)
     with transaction.atomic():
         campaign = Campaign.objects.create(
-            organisation=organisation, author=author, name=name, request=request_to_json(request), rules=rules_to_json(rules)
+            organisation=organisation,
+            author=author,
+            name=name,
+            request=request_to_json(request),
+            rules=rules_to_json(rules),
+            target_count=len(request.targets),
         )
         _send_job(campaign, author)
         _note(campaign, author, "create", before=None, after={"name": name, "targets": len(request.targets), "uavs": len(request.uavs)})
@@ -83,7 +88,10 @@ def delete_campaign(*, campaign: Campaign, actor: User) -> None:
     """Delete the campaign, and those of its missions that are not approved yet; they can be restored. The others stay."""
     with transaction.atomic():
         locked = Campaign.objects.select_for_update().get(pk=campaign.pk)
-        for mission in _missions_of(locked).filter(state__in=(MissionState.DRAFT, MissionState.PLANNED)):
+        if locked.job is not None:
+            for job in Job.objects.filter(pk=locked.job, state__in=OPEN_STATES):
+                cancel_job(job=job)
+        for mission in _missions_of(locked).filter(state__in=EDITABLE):
             delete_mission(mission=mission, actor=actor)
         _note(locked, actor, "delete", before={"name": locked.name}, after=None)
         locked.delete()
@@ -106,24 +114,33 @@ def plan_campaign_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress) 
         _refuse_missions_in_use(locked)
         for mission in _missions_of(locked):
             delete_mission(mission=mission, actor=job.created_by)
+        Mission.objects.filter(campaign=locked).update(campaign=None)  # those that are deleted: if restored, they are of their own
+        crew_of = {visit.site: day.crew for day in planned.schedule.days for visit in day.visits}
         order = _order(planned)
-        stored = [_stored(locked, job.created_by, number, planned.missions[place]) for number, place in enumerate(order, start=1)]
+        stored = [
+            _stored(locked, job.created_by, number, planned.missions[place], is_first_crew=crew_of.get(place, 0) == 0)
+            for number, place in enumerate(order, start=1)
+        ]
         locked.schedule = _schedule_json(planned, order, stored)
         locked.planned_at = timezone.now()
-        locked.save(update_fields=["schedule", "planned_at", "updated_at"])
-        if not finish_job(job=job, result={"campaign": str(locked.pk)}, message=Reason("campaign_planned", {"count": len(stored)})):
+        locked.mission_count = len(stored)
+        locked.day_count = max((day["day"] for day in locked.schedule["days"]), default=0)
+        locked.save()
+        if stop() or not finish_job(
+            job=job, result={"campaign": str(locked.pk)}, message=Reason("campaign_planned", {"count": len(stored)})
+        ):
             raise JobCancelled
 
 
 def _send_job(campaign: Campaign, actor: User) -> None:
-    targets = len(campaign.request["targets"])
-    job = create_job_within(
-        MAX_OPEN_CAMPAIGNS,
+    if Job.objects.filter(organisation=campaign.organisation, task=CAMPAIGN_TASK, state__in=OPEN_STATES).count() >= MAX_OPEN_CAMPAIGNS:
+        raise TooManyJobs(MAX_OPEN_CAMPAIGNS)
+    job = create_job(
         organisation=campaign.organisation,
         created_by=actor,
         task=CAMPAIGN_TASK,
         parameters={"campaign": str(campaign.pk), "request": campaign.request, "rules": campaign.rules},
-        message=Reason("planning_targets", {"count": targets}),
+        message=Reason("planning_targets", {"count": campaign.target_count}),
     )
     campaign.job = job.pk
     campaign.save(update_fields=["job", "updated_at"])
@@ -135,11 +152,12 @@ def _missions_of(campaign: Campaign) -> Any:
 
 
 def _refuse_missions_in_use(campaign: Campaign) -> None:
-    if count := _missions_of(campaign).exclude(state__in=(MissionState.DRAFT, MissionState.PLANNED)).count():
+    if count := _missions_of(campaign).exclude(state__in=EDITABLE).count():
         raise MissionsInUse(count)
 
 
 def _planned(campaign: Campaign, request: PlanRequest, rules: CampaignRules, stop: Stop, on_progress: OnPlanProgress) -> PlannedCampaign:
+    request = _as_there(request)
     places, _deleted = resolved_targets(request.targets)
     courses: list[tuple[LonLat, ...]] = [()] * len(request.targets)
     for place in places:
@@ -152,7 +170,7 @@ def _planned(campaign: Campaign, request: PlanRequest, rules: CampaignRules, sto
         began = min(done, 0.95)
 
         def note(progress: PlanProgress) -> None:
-            on_progress(PlanProgress(began + min(share, 0.98 - began) * progress.share, progress.message, progress.draw))
+            on_progress(PlanProgress(began + min(share, 0.98 - began) * progress.share, progress.message))
 
         asked = replace(asked, organisation=campaign.organisation_id)
         plan = make_plan(request=asked, stop=stop, on_progress=note, search_s=SEARCH_S)
@@ -161,14 +179,27 @@ def _planned(campaign: Campaign, request: PlanRequest, rules: CampaignRules, sto
         done += share
         return plan
 
-    return plan_campaign(
-        courses,
+    return plan_campaign(courses, request, rules, airspace=airspace, make_plan=make, stop=stop)
+
+
+def _as_there(request: PlanRequest) -> PlanRequest:
+    """Return the request without assets and stored UAVs that were deleted since the campaign was created."""
+    named = [target.asset for target in request.targets if target.asset is not None]
+    assets = set(Asset.objects.filter(pk__in=named).values_list("pk", flat=True))
+    uavs = set(Uav.objects.filter(pk__in=[uav.uav for uav in request.uavs if uav.uav is not None]).values_list("pk", flat=True))
+    return replace(
         request,
-        rules,
-        may_launch_at=lambda position: zone_at(position, airspace) is None,
-        make_plan=make,
-        stop=stop,
+        uavs=tuple(uav if uav.uav in uavs else _unlinked(uav) for uav in request.uavs),
+        targets=tuple(
+            target if target.asset is None or target.asset in assets else replace(target, asset=None, position=None, stretch=None)
+            for target in request.targets
+        ),
     )
+
+
+def _unlinked(uav: UavRequest) -> UavRequest:
+    """Return a UAV with the same figures that is no stored one."""
+    return replace(uav, uav=None, own_figures=(), fleet_figures={})
 
 
 def _order(planned: PlannedCampaign) -> list[int]:
@@ -177,12 +208,11 @@ def _order(planned: PlannedCampaign) -> list[int]:
     return [*(visit.site for day in days for visit in day.visits), *planned.schedule.too_long]
 
 
-def _stored(campaign: Campaign, author: User | None, number: int, mission: SiteMission) -> Mission:
+def _stored(campaign: Campaign, author: User | None, number: int, mission: SiteMission, *, is_first_crew: bool) -> Mission:
+    """Store a mission with its plan. The UAVs of the request are those of the first crew; others carry some of the same figures."""
+    request = mission.request if is_first_crew else replace(mission.request, uavs=tuple(map(_unlinked, mission.request.uavs)))
     stored = create_mission(
-        organisation=campaign.organisation,
-        author=author,
-        name=f"{campaign.name} · {number}"[:MAX_NAME_LENGTH],
-        request=mission.request,
+        organisation=campaign.organisation, author=author, name=f"{campaign.name} · {number}"[:MAX_NAME_LENGTH], request=request
     )
     Mission.objects.filter(pk=stored.pk).update(campaign=campaign)
     stored.campaign = campaign
@@ -235,11 +265,12 @@ def _mission_json(mission: SiteMission, sites: list[int], number: int, row: Miss
         "number": number,
         "mission": str(row.pk),
         "site": sites.index(mission.site),
-        "targets": len(mission.visited),
+        "targets": len(mission.flown),
         "flights": mission.flights,
         "length_m": round(mission.plan["total_length_m"]),
         "work_s": round(mission.work_s),
         "farthest_m": round(mission.farthest_m()),
+        "warnings": len(mission.plan["warnings"]),
         "is_too_long": is_too_long,
     }
 

@@ -8,7 +8,6 @@ from uuid import UUID
 from django.http import Http404
 from django.urls import reverse
 from django.utils.translation import gettext as _
-from django.utils.translation import ngettext
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -28,6 +27,7 @@ from missions.serializers.inputs import plan_request
 from missions.services.campaigns import CampaignIsPlanned, MissionsInUse, create_campaign, delete_campaign, plan_campaign_again
 from missions.views.plans import PLAN_EXAMPLE
 from missions.views.problems import api_problems
+from operation.reasons import Reason
 from planning.campaigns.rules import rules_from_json
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
@@ -37,6 +37,7 @@ from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
 from workspace.jobs.services import TooManyJobs
 from workspace.models import User
+from workspace.reason_texts import reason_text
 
 PLANNED_BY_JOB = "A job plans it, see `job` of the campaign; its missions, days and what is left out are there once it is done."
 EXAMPLE = {"name": "Valley lines", **PLAN_EXAMPLE, "rules": {"start": [9.52, 47.14], "crews": 1, "reach_m": 3000}}
@@ -57,12 +58,10 @@ def _problems() -> Iterator[None]:
         except CampaignIsPlanned as error:
             raise ApiProblem(409, "campaign_is_planned", _("The campaign is being planned. Stop that first.")) from error
         except MissionsInUse as error:
-            message = ngettext(
-                "%(count)s mission of this campaign is approved or has flown. Its missions stay as they are.",
-                "%(count)s missions of this campaign are approved or have flown. Its missions stay as they are.",
-                error.count,
-            )
-            raise ApiProblem(409, "missions_in_use", message % {"count": error.count}) from error
+            message = reason_text(Reason("campaign_missions_in_use", {"count": error.count}))
+            raise ApiProblem(409, "missions_in_use", message) from error
+        except Campaign.DoesNotExist as error:
+            raise Http404 from error
         except TooManyJobs as error:
             raise ApiProblem(429, "too_many_jobs", _("Enough campaigns are being planned."), retry_after_s=30) from error
 
@@ -83,7 +82,11 @@ class CampaignList(_PlansCampaigns):
     )
     def get(self, request: SignedInRequest) -> Response:
         text = request.query_params.get("text", "").strip()[:100].replace("\0", "")
-        rows = Campaign.objects.filter(organisation=request.user.organisation, name__icontains=text).select_related("author")
+        rows = (
+            Campaign.objects.filter(organisation=request.user.organisation, name__icontains=text)
+            .select_related("author")
+            .defer("request", "rules", "schedule")
+        )
         page = page_of(request, rows, order=("-updated_at", "-pk"))
         return Response({"results": [campaign_summary(campaign) for campaign in page.rows], "next": page.next})
 
@@ -122,7 +125,9 @@ class CampaignDetail(APIView):
         responses={204: None},
     )
     def delete(self, request: SignedInRequest, campaign_id: UUID) -> Response:
-        delete_campaign(campaign=_campaign(request.user, campaign_id), actor=request.user)
+        campaign = _campaign(request.user, campaign_id)
+        with _problems():
+            delete_campaign(campaign=campaign, actor=request.user)
         return Response(status=204)
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -10,17 +10,20 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import distance_m
 from operation.reasons import Reason
+from planning.airspace import Airspace, zone_at
 from planning.campaigns.crew_days import Schedule, schedule, work_limit_s
-from planning.campaigns.launch_sites import SiteChoice, choose_sites
+from planning.campaigns.launch_sites import choose_sites, places_beside
 from planning.campaigns.rules import CampaignRules
-from planning.request import BaseRequest, EndAction, PlanRequest
+from planning.clearance.lost_link import LostLink
+from planning.request import BaseRequest, EndAction, LostLinkRequest, PlanRequest
 from planning.solver.solver import Stop
 from planning.trajectory.waypoints import WaypointKind
 
-# A later mission from the same site, with full batteries, may reach targets that were left out for these.
-REACHABLE_LATER = {"beyond_range", "beyond_energy", "most_targets"}
-BEYOND_REACH, ASSET_GONE = "beyond_reach", "asset_gone"
+BEYOND_REACH, ASSET_GONE, BEYOND_DAY = "beyond_reach", "asset_gone", "beyond_working_day"
+NEVER_REACHED = {"inside_zone", ASSET_GONE}  # from no site, and in no later mission
+MIN_WORK_S = 300.0  # a day that leaves less for flying than this at a site is not worth its drive
 MAX_MISSIONS = 200
+ROUNDS = 2  # of choosing sites: in the second one for targets that could not be flown from their first site
 
 PlanJson = dict[str, Any]  # see planning/plan_json.py
 MakePlan = Callable[[PlanRequest, float], PlanJson]  # with the share of the campaign's targets that are planned
@@ -54,10 +57,14 @@ class SiteMission:
         return sum(1 + sum(point["kind"] == WaypointKind.BASE for point in waypoints) for waypoints in flown)
 
     @property
-    def visited(self) -> tuple[int, ...]:
-        """Places in the campaign's request of the targets that it visits."""
-        left_out = {item["target"] for item in self.plan["unassigned"]}
-        return tuple(target for place, target in enumerate(self.targets) if place not in left_out)
+    def unassigned(self) -> dict[int, PlanJson]:
+        """What the plan leaves out, by place in the campaign's request."""
+        return {self.targets[item["target"]]: item for item in self.plan["unassigned"]}
+
+    @property
+    def flown(self) -> list[int]:
+        """Places in the campaign's request of the targets that it visits, in the order in which they are flown."""
+        return [self.targets[place] for route in self.plan["routes"] for place in route["targets"]]
 
     def farthest_m(self) -> float:
         """Greatest distance of a route from the launch site [m]."""
@@ -70,7 +77,7 @@ class SiteMission:
 
 @dataclass(frozen=True)
 class UnvisitedTarget:
-    """A target that no mission visits, by its place in the request. reason: as in plans, or BEYOND_REACH. why: Reasons as JSON."""
+    """A target that no mission visits, by its place in the request. reason: as in plans, or one of this module; why: Reasons as JSON."""
 
     target: int
     reason: str
@@ -88,12 +95,18 @@ class PlannedCampaign:
     left_out: tuple[UnvisitedTarget, ...]
 
 
+def at_any_site(request: PlanRequest, rules: CampaignRules) -> PlanRequest:
+    """Return the request with UAVs that return to where they launch, with the flights of the rules, without locks and departure."""
+    uavs = tuple(replace(uav, home=None, end_action=EndAction.RETURN, sorties=rules.flights) for uav in request.uavs)
+    return replace(request, uavs=uavs, locks=(), bases=(), departs_at=None, return_to_start=True)
+
+
 def plan_campaign(
     courses: Sequence[Sequence[LonLat]],
     request: PlanRequest,
     rules: CampaignRules,
     *,
-    may_launch_at: Callable[[LonLat], bool],
+    airspace: Airspace,
     make_plan: MakePlan,
     stop: Stop,
 ) -> PlannedCampaign:
@@ -101,85 +114,120 @@ def plan_campaign(
 
     Its UAVs start from each launch site and return there. Raises TooManyMissions, Stopped, and what make_plan raises.
     """
-    there = [target for target, course in enumerate(courses) if course]
-    given = [site for site in rules.sites if may_launch_at(site.position)]
-    blocked = tuple(site for site in rules.sites if site not in given)
-    places = [site.position for site in given]
+    given = [site for site in rules.sites if zone_at(site.position, airspace) is None]
+    places = list(given)
     if rules.proposes_sites:
-        ends = dict.fromkeys(end for target in there for end in (courses[target][0], courses[target][-1]))
-        places += [end for end in ends if may_launch_at(end)]
-    choice = choose_sites([courses[target] for target in there], places, rules.reach_m, given=len(given))
-    sites = tuple(given[site] if site < len(given) else BaseRequest("", places[site]) for site in choice.sites)
-    missions: list[SiteMission] = []
-    left_out = [
-        UnvisitedTarget(there[place], BEYOND_REACH, [_why_beyond_reach(nearest_m).to_json()])
-        for place, nearest_m in enumerate(choice.nearest_m)
-        if choice.site_of[place] is None
-    ]
-    left_out += [
-        UnvisitedTarget(target, ASSET_GONE, [Reason("asset_deleted").to_json()]) for target, course in enumerate(courses) if not course
-    ]
-    for number, site in enumerate(sites):
-        planned = _AtSite(number, site.position, request, rules, make_plan, stop)
-        for found in planned.missions(_targets_of(choice, number, there)):
-            missions.append(found)
-            if len(missions) > MAX_MISSIONS:
-                raise TooManyMissions
-        left_out += planned.left_out
-    places_of_missions = [sites[mission.site].position for mission in missions]
-    days = schedule(places_of_missions, [mission.work_s for mission in missions], rules.crews, stop=stop)
-    return PlannedCampaign(sites, blocked, tuple(missions), days, tuple(sorted(left_out, key=lambda one: one.target)))
-
-
-def _why_beyond_reach(nearest_m: float) -> Reason:
-    return Reason("beyond_launch_sites", {"needed_m": nearest_m}) if math.isfinite(nearest_m) else Reason("no_launch_site")
-
-
-def _targets_of(choice: SiteChoice, site: int, there: Sequence[int]) -> list[int]:
-    return [there[place] for place, of_target in enumerate(choice.site_of) if of_target == site]
+        places += [BaseRequest("", place) for place in places_beside([course for course in courses if course], airspace)]
+    work = _Work(courses, at_any_site(request, rules), rules, make_plan, stop)
+    todo = [target for target, course in enumerate(courses) if course]
+    work.leave_out((target for target, course in enumerate(courses) if not course), ASSET_GONE, Reason("asset_deleted"))
+    for _ in range(ROUNDS):
+        todo = work.fly_from(places, given, todo)
+        places = [place for place in places if place not in work.sites]
+        if not todo:
+            break
+    days = schedule(
+        [work.sites[mission.site].position for mission in work.missions],
+        [mission.work_s for mission in work.missions],
+        rules.crews,
+        stop=stop,
+    )
+    if stop():
+        raise Stopped
+    left_out = tuple(sorted(work.left_out.values(), key=lambda one: one.target))
+    blocked = tuple(site for site in rules.sites if site not in given)
+    return PlannedCampaign(tuple(work.sites), blocked, tuple(work.missions), days, left_out)
 
 
 @dataclass
-class _AtSite:
-    """Missions from one site, each within a working day of its own."""
+class _Work:
+    """What is planned so far. left_out: of each target that no mission visits yet, why."""
 
-    number: int
-    position: LonLat
+    courses: Sequence[Sequence[LonLat]]
     request: PlanRequest
     rules: CampaignRules
     make_plan: MakePlan
     stop: Stop
+    sites: list[BaseRequest] = field(default_factory=list)
+    missions: list[SiteMission] = field(default_factory=list)
+    left_out: dict[int, UnvisitedTarget] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        self.left_out: list[UnvisitedTarget] = []
+    def leave_out(self, targets: Sequence[int] | Iterator[int], reason: str, why: Reason) -> None:
+        for target in targets:
+            self.left_out[target] = UnvisitedTarget(target, reason, [why.to_json()])
 
-    def missions(self, targets: Sequence[int]) -> Iterator[SiteMission]:
-        """Yield the missions that visit these targets, and collect those that none can visit."""
-        if not targets:
-            return
+    def fly_from(self, places: Sequence[BaseRequest], given: Sequence[BaseRequest], targets: Sequence[int]) -> list[int]:
+        """Choose sites for these targets and plan their missions. Returns the targets that might be flown from another site."""
+        nearby = [place for place in places if work_limit_s(place.position, self.rules.crews) >= MIN_WORK_S]
+        known = sum(place in given for place in nearby)
+        courses = [self.courses[target] for target in targets]
+        choice = choose_sites(courses, [place.position for place in nearby], self.rules.reach_m, given=known, stop=self.stop)
         if self.stop():
             raise Stopped
-        found = self._planned(targets)
-        if found.work_s > work_limit_s(self.position, self.rules.crews) and len(found.visited) > 1:
-            for half in _halves(found):
-                yield from self.missions(half)
-        elif found.visited:
-            yield found
-        items = {targets[item["target"]]: item for item in found.plan["unassigned"]}
-        later = [target for target, item in items.items() if item["reason"] in REACHABLE_LATER and found.visited]
-        self.left_out += [UnvisitedTarget(target, item["reason"], item["why"]) for target, item in items.items() if target not in later]
-        yield from self.missions(later)
+        for target, place, nearest_m in zip(targets, choice.site_of, choice.nearest_m, strict=True):
+            if place is None and target not in self.left_out:
+                self._leave_out_without_site(target, nearest_m, has_far_sites=len(nearby) < len(places))
+        failed = []
+        for number, place in enumerate(choice.sites):
+            self.sites.append(nearby[place])
+            own = [target for target, of_target in zip(targets, choice.site_of, strict=True) if of_target == number]
+            for target, item in self._fly(len(self.sites) - 1, own).items():
+                self.left_out[target] = UnvisitedTarget(target, item["reason"], item["why"])
+                if item["reason"] not in NEVER_REACHED:
+                    failed.append(target)
+        return sorted(failed)
 
-    def _planned(self, targets: Sequence[int]) -> SiteMission:
-        uavs = tuple(
-            replace(uav, position=self.position, home=None, end_action=EndAction.RETURN, sorties=self.rules.flights)
-            for uav in self.request.uavs
+    def _leave_out_without_site(self, target: int, nearest_m: float, *, has_far_sites: bool) -> None:
+        if has_far_sites and not nearest_m <= self.rules.reach_m:
+            self.leave_out([target], BEYOND_DAY, Reason("drive_takes_day"))
+        elif math.isfinite(nearest_m):
+            self.leave_out([target], BEYOND_REACH, Reason("beyond_launch_sites", {"needed_m": nearest_m}))
+        else:
+            self.leave_out([target], BEYOND_REACH, Reason("no_launch_site"))
+
+    def _fly(self, site: int, targets: Sequence[int]) -> dict[int, PlanJson]:
+        """Plan the missions that visit these targets from a site, each within a day of its own. Returns what none of them visits.
+
+        A mission holds what it visits and nothing else: what it leaves out belongs to a later one, or to none.
+        """
+        if not targets:
+            return {}
+        found = self._planned(site, targets)
+        unassigned, flown = found.unassigned, found.flown
+        if not flown:
+            return unassigned
+        left: dict[int, PlanJson] = {}
+        if unassigned:
+            left |= self._fly(site, sorted(flown))
+            never = {target: item for target, item in unassigned.items() if item["reason"] in NEVER_REACHED}
+            return left | never | self._fly(site, [target for target in unassigned if target not in never])
+        if found.work_s > work_limit_s(self.sites[site].position, self.rules.crews) and len(flown) > 1:
+            half = len(flown) // 2
+            return self._fly(site, sorted(flown[:half])) | self._fly(site, sorted(flown[half:]))
+        self.missions.append(found)
+        for target in flown:
+            self.left_out.pop(target, None)
+        if len(self.missions) > MAX_MISSIONS:
+            raise TooManyMissions
+        return left
+
+    def _planned(self, site: int, targets: Sequence[int]) -> SiteMission:
+        if self.stop():
+            raise Stopped
+        position = self.sites[site].position
+        request = replace(
+            self.request,
+            uavs=tuple(replace(uav, position=position) for uav in self.request.uavs),
+            targets=tuple(self.request.targets[target] for target in targets),
+            lost_link=_lost_link_at(position, self.request.lost_link, self.rules.reach_m),
         )
-        request = replace(self.request, uavs=uavs, targets=tuple(self.request.targets[target] for target in targets), locks=(), bases=())
-        return SiteMission(self.number, tuple(targets), request, self.make_plan(request, len(targets) / len(self.request.targets)))
+        return SiteMission(site, tuple(targets), request, self.make_plan(request, len(targets) / len(self.request.targets)))
 
 
-def _halves(mission: SiteMission) -> tuple[list[int], list[int]]:
-    """Return the visited targets of a mission in the order in which they are flown, in two parts."""
-    order = [mission.targets[place] for route in mission.plan["routes"] for place in route["targets"]]
-    return order[: len(order) // 2], order[len(order) // 2 :]
+def _lost_link_at(site: LonLat, wanted: LostLinkRequest, reach_m: float) -> LostLinkRequest:
+    """Return the lost-link action with the rally points in reach of the site."""
+    if wanted.behaviour is LostLink.GO_ON or not wanted.rally_points:
+        return wanted
+    away_m = distance_m(np.tile(np.array(site), (len(wanted.rally_points), 1)), np.array(wanted.rally_points))
+    near = tuple(point for point, metres in zip(wanted.rally_points, away_m, strict=True) if metres <= reach_m)
+    return replace(wanted, rally_points=near)

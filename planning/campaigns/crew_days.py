@@ -82,7 +82,7 @@ def schedule(sites: Sequence[LonLat], work_s: Sequence[float], crews: Crews, *, 
     road_m = _road_m([crews.start, *(sites[site] for site in fitting)])
     stay_s = [work_s[site] + crews.set_up_s for site in fitting]
     needed = math.ceil(sum(stay_s) / crews.day_s / crews.count)
-    days = min(len(fitting), 2 * needed + 1)
+    days = min(len(fitting), needed + 1)
     while (solution := _solve(road_m / crews.drive_mps, stay_s, crews, days, stop, search_s)).unassigned and days < len(fitting):
         days = min(len(fitting), 2 * days)
     routes = sorted((route for of_crew in solution.sorties for route in of_crew if route), key=lambda route: fitting[route[0]])

@@ -1,19 +1,25 @@
-"""Choice of launch sites, so that every target lies within reach of one, and of the site from which each target is flown.
+"""Launch sites: places where crews could launch, and the choice of sites so that every target lies within reach of one.
 
 It is a set cover: sites are added greedily by the metres that they cover, redundant ones are removed, and each is then moved to the
 candidate nearest to its targets. Given sites are used before others are proposed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from inspection.geodesy import LonLat
-from inspection.geodesy.wgs84 import distance_m
+from inspection.geodesy.wgs84 import WGS84, distance_m
+from inspection.network.spans import spans_of
+from planning.airspace import Airspace, zone_at
 from planning.problem import BoolArray, FloatArray
+from planning.trajectory.beside_spans import points_beside
+from planning.trajectory.waypoints import NONE
 
 POINT_M = 1.0  # counted for a target that is a point
+ASIDE_M = 40.0  # of a proposed site from the tower beside which it lies: farther than arms of towers and wires in the wind reach
+NEAREST = 50  # candidates that are looked at to name the nearest one to a target out of reach
 
 
 @dataclass(frozen=True)
@@ -28,14 +34,41 @@ class SiteChoice:
     nearest_m: tuple[float, ...]
 
 
-def choose_sites(targets: Sequence[Sequence[LonLat]], candidates: Sequence[LonLat], reach_m: float, given: int = 0) -> SiteChoice:
+def places_beside(courses: Sequence[Sequence[LonLat]], airspace: Airspace) -> list[LonLat]:
+    """Return places to propose: on both sides of the ends of the targets, clear of towers, wires and tracks and outside zones."""
+    aside = np.array([place for course in courses for place in _aside(course)])
+    if not len(aside):
+        return []
+    nothing = np.full(len(aside), NONE, dtype=np.int64)
+    beside, _ = points_beside(aside, np.zeros(len(aside)), nothing, nothing, np.inf, spans_of(airspace.network))
+    is_clear = np.ones(len(aside), dtype=bool)
+    is_clear[beside] = False
+    places = dict.fromkeys(LonLat(*map(float, place)) for place in np.round(aside[is_clear], 7))
+    return [place for place in places if zone_at(place, airspace) is None]
+
+
+def _aside(course: Sequence[LonLat]) -> Iterator[tuple[float, float]]:
+    """Yield places ASIDE_M from each end of a course, across its direction; of a point to the east, the west, the north and the south."""
+    ends = [(course[0], course[1]), (course[-1], course[-2])] if len(course) > 1 else [(course[0], course[0])]
+    for end, other in ends:
+        azimuth_deg = WGS84.inv(*end, *other)[0] if end != other else 0.0
+        sides = (90.0, 270.0) if end != other else (0.0, 90.0, 180.0, 270.0)
+        for side_deg in sides:
+            lon, lat, _ = WGS84.fwd(*end, azimuth_deg + side_deg, ASIDE_M)
+            yield lon, lat
+
+
+def choose_sites(
+    targets: Sequence[Sequence[LonLat]], candidates: Sequence[LonLat], reach_m: float, given: int = 0, stop: Callable[[], bool] = bool
+) -> SiteChoice:
     """Return launch sites among the candidates, of which the first `given` are used where they suffice.
 
-    A target, lon/lat of its points in order, is within reach of a site if all of its points are within reach_m [m].
+    A target, lon/lat of its points in order, is within reach of a site if all of its points are within reach_m [m]. Once `stop` is true,
+    the remaining targets have no site.
     """
     if not (targets and candidates):
         return SiteChoice((), (None,) * len(targets), (np.inf,) * len(targets))
-    farthest_m, mean_m = _distances_m(targets, candidates)
+    farthest_m, mean_m = _distances_m(targets, candidates, reach_m, stop)
     length_m = np.array([_length_m(target) for target in targets])
     reaches = farthest_m <= reach_m
     chosen = _covering(reaches[:, :given], mean_m[:, :given], length_m)
@@ -51,14 +84,24 @@ def choose_sites(targets: Sequence[Sequence[LonLat]], candidates: Sequence[LonLa
     )
 
 
-def _distances_m(targets: Sequence[Sequence[LonLat]], candidates: Sequence[LonLat]) -> tuple[FloatArray, FloatArray]:
-    """Return the greatest and the mean distance from each candidate to the points of each target [m], (targets, candidates)."""
+def _distances_m(
+    targets: Sequence[Sequence[LonLat]], candidates: Sequence[LonLat], reach_m: float, stop: Callable[[], bool]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the greatest and the mean distance from each candidate to the points of each target [m], (targets, candidates).
+
+    inf for candidates that do not reach the first point of the target, except for the nearest ones of a target that none reaches.
+    """
     at = np.asarray(candidates, dtype=np.float64)
-    farthest_m, mean_m = np.empty((len(targets), len(at))), np.empty((len(targets), len(at)))
+    farthest_m, mean_m = np.full((len(targets), len(at)), np.inf), np.full((len(targets), len(at)), np.inf)
     for row, target in enumerate(targets):
+        if stop():
+            break
         points = np.asarray(target, dtype=np.float64)
-        between_m = distance_m(np.repeat(points, len(at), axis=0), np.tile(at, (len(points), 1))).reshape(len(points), len(at))
-        farthest_m[row], mean_m[row] = between_m.max(axis=0), between_m.mean(axis=0)
+        first_m = distance_m(np.broadcast_to(points[0], at.shape), at)
+        near = np.flatnonzero(first_m <= reach_m)
+        near = near if len(near) else np.argsort(first_m)[:NEAREST]
+        between_m = distance_m(np.repeat(points, len(near), axis=0), np.tile(at[near], (len(points), 1))).reshape(len(points), len(near))
+        farthest_m[row, near], mean_m[row, near] = between_m.max(axis=0), between_m.mean(axis=0)
     return farthest_m, mean_m
 
 
@@ -95,7 +138,11 @@ def _moved_closer(sites: list[int], reaches: BoolArray, mean_m: FloatArray, leng
     moved = []
     for place, site in enumerate(sites):
         own = np.array([place == of_target for of_target in site_of], dtype=bool)
-        cost_m = np.where(reaches[own].all(axis=0), mean_m[own].T @ length_m[own], np.inf) if own.any() else np.array([np.inf])
+        cost_m = (
+            np.where(reaches[own].all(axis=0), np.where(reaches[own], mean_m[own], 0.0).T @ length_m[own], np.inf)
+            if own.any()
+            else np.array([np.inf])
+        )
         moved.append(int(np.argmin(cost_m)) if np.isfinite(cost_m).any() else site)
     return moved
 

@@ -1076,9 +1076,11 @@ export interface components {
             work_s: number;
             /**
              * Format: double
-             * @description greatest distance of a route from the site
+             * @description greatest distance of a route from the site; it may lie beyond the reach of targets
              */
             farthest_m: number;
+            /** @description number of warnings of its plan */
+            warnings: number;
             /** @description it takes longer than a working day, so it is in none */
             is_too_long: boolean;
         };
@@ -1116,7 +1118,10 @@ export interface components {
              *     ]
              */
             start: number[];
-            /** @default 1 */
+            /**
+             * @description each with such UAVs; those of the request are the first crew's, the missions of the others name no stored UAV
+             * @default 1
+             */
             crews: number;
             /**
              * Format: double
@@ -1143,14 +1148,14 @@ export interface components {
              */
             reach_m: number;
             /**
-             * @description of each UAV in a mission, at most
+             * @description of each UAV in a mission, at most, each on a full battery
              * @default 4
              */
             flights: number;
             /** @description launch sites to use */
             sites?: components["schemas"]["LaunchSite"][];
             /**
-             * @description propose further sites, outside zones, at ends of targets; roads there are not checked
+             * @description propose further sites 40 m beside ends of targets, outside zones, clear of towers and wires; roads are not checked
              * @default true
              */
             proposes_sites: boolean;
@@ -1165,7 +1170,10 @@ export interface components {
              *     ]
              */
             start: number[];
-            /** @default 1 */
+            /**
+             * @description each with such UAVs; those of the request are the first crew's, the missions of the others name no stored UAV
+             * @default 1
+             */
             crews: number;
             /**
              * Format: double
@@ -1192,14 +1200,14 @@ export interface components {
              */
             reach_m: number;
             /**
-             * @description of each UAV in a mission, at most
+             * @description of each UAV in a mission, at most, each on a full battery
              * @default 4
              */
             flights: number;
             /** @description launch sites to use */
             sites?: components["schemas"]["LaunchSiteRequest"][];
             /**
-             * @description propose further sites, outside zones, at ends of targets; roads there are not checked
+             * @description propose further sites 40 m beside ends of targets, outside zones, clear of towers and wires; roads are not checked
              * @default true
              */
             proposes_sites: boolean;

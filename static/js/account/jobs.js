@@ -20,6 +20,7 @@ const TASKS = {
   "inspection.tasks.apply_proposal": t("Applying an import"),
   "inspection.tasks.fetch_subscription": t("Fetching zones"),
   "inspection.tasks.read_proposal": t("Reading an import"),
+  "missions.tasks.plan_campaign": t("Planning a campaign"),
   "missions.tasks.plan_mission": t("Planning a mission"),
   "missions.tasks.replan_mission": t("Planning in flight"),
   "missions.tasks.solve_plan": t("Planning"),

@@ -2,7 +2,7 @@
 
 import { ApiError, freshKey, get, post } from "../api.js";
 import { h, icon, setChildren, term } from "../dom.js";
-import { STATES } from "../missions/rows.js";
+import { MISSION_STATES } from "../domain/planned_state.js";
 import { toast } from "../page/toast.js";
 import { mountFindings } from "../photos/findings_list.js";
 import { mountPhotos } from "../photos/section.js";
@@ -143,7 +143,7 @@ function missionRow(mission) {
   } = mission;
   const isEnded = ENDED.includes(state);
   const facts = [
-    STATES[state],
+    MISSION_STATES[state],
     dateText(departs ?? created),
     isEnded
       ? t("{done} of {all} inspected", { done: numberText(done), all: numberText(count) })

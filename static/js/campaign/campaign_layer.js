@@ -76,7 +76,7 @@ export function recolour(map, fonts) {
 export function show(map, { schedule, rules }, routes) {
   const dayOf = new Map(schedule?.days.flatMap(({ day, visits }) => visits.map(({ mission }) => [mission, day])) ?? []);
   /** @param {number} number */
-  const colourOf = (number) => colourOfDay(dayOf.get(number) ?? 1);
+  const colourOf = (number) => colourOfDay(dayOf.get(number) ?? 0); // 0: in no day
   setFeatures(
     map,
     "campaign-routes",

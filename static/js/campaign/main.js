@@ -1,6 +1,6 @@
 /** The page of a campaign: its days, missions and launch sites, and planning it again with other rules. */
 
-import { ApiError, get, isAbort, post, remove } from "../api.js";
+import { ApiError, freshKey, get, isAbort, post, remove } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";
 import { boxAround } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
@@ -11,7 +11,7 @@ import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { percentText } from "../units.js";
 import * as layer from "./campaign_layer.js";
-import { openRules } from "./rules_form.js";
+import { openedOrTold } from "./rules_form.js";
 import { blockedCard, dayCards, factsOf, leftOutCard, tooLongCard } from "./schedule_view.js";
 
 /** @import { Answer } from "../api.js" */
@@ -23,7 +23,8 @@ import { blockedCard, dayCards, factsOf, leftOutCard, tooLongCard } from "./sche
 let campaign = null;
 /** @type {CampaignRoutes | null} */
 let routes = null;
-let problem = ""; // of the last job
+/** Of the last job, or of loading. @type {{ words: string, canRetry: boolean } | null} */
+let problem = null;
 /** @type {Job | null} */
 let job = null;
 
@@ -43,7 +44,7 @@ const {
 const page = /** @type {CampaignPageData} */ (groundPage);
 const address = `/campaigns/${page.campaign}`;
 
-/** Read campaign and routes, and draw them. */
+/** Read campaign and routes, and draw them. Rejects with ApiError. */
 async function load() {
   const { data } = /** @type {Answer<Campaign>} */ (await get(address));
   campaign = data;
@@ -51,31 +52,56 @@ async function load() {
   draw();
 }
 
-/** Follow the job that plans the campaign, if one does. */
+/** Load again what could not be loaded, or say why not. */
+async function reload() {
+  try {
+    problem = null;
+    await load();
+    fit({ animate: false });
+    await followPlanning();
+  } catch (error) {
+    tell(error);
+  }
+}
+
+/** @param {unknown} error */
+function tell(error) {
+  if (!(error instanceof ApiError)) throw error;
+  problem = { words: error.isAway ? t("The server cannot be reached.") : error.message, canRetry: true };
+  job = null;
+  draw();
+}
+
+/** Follow the job that plans the campaign while one does, and show what it has planned. */
 async function followPlanning() {
   if (!campaign?.job) return;
+  const { data } = /** @type {Answer<Job>} */ (await get(`/jobs/${campaign.job}`));
+  if (data.state === "failed" && !campaign.schedule) problem = { words: data.error?.message ?? "", canRetry: false };
+  if (!["queued", "running"].includes(data.state)) {
+    draw();
+    return;
+  }
+  const had = campaign.schedule;
   try {
-    job = await followLive(campaign.job, {
+    await followLive(data.id, {
       onProgress(next) {
         job = next;
         drawJob();
       },
+    }).then(({ state }) => {
+      if (state === "cancelled") problem = { words: t("Planning was stopped. Nothing was stored."), canRetry: false };
     });
-    problem = job.state === "cancelled" ? t("Planning was stopped. Nothing was stored.") : "";
   } catch (error) {
     if (isAbort(error)) return;
-    const isFailed = error instanceof ApiError && !error.isAway && error.status === 500;
-    problem = isFailed ? error.message : "";
+    if (!(error instanceof ApiError) || error.isAway) throw error;
+    problem = { words: error.message, canRetry: false };
+  } finally {
+    job = null;
+    drawJob();
   }
-  job = null;
-}
-
-async function planned() {
-  await followPlanning();
-  const had = campaign?.schedule;
   await load();
-  if (!had && campaign?.schedule) fit({ animate: true });
-  if (campaign?.schedule && !problem) announce(factsOf(campaign.schedule));
+  if (!had && campaign.schedule) fit({ animate: true });
+  if (campaign.schedule && !problem) announce(factsOf(campaign.schedule));
 }
 
 /** @param {{ animate?: boolean }} [options] */
@@ -106,6 +132,7 @@ const acts = {
     if (layout.isPhone()) layout.foldSide();
   },
   move: page.canPlan ? startPlacing : null,
+  reach_m: () => campaign?.rules.reach_m ?? Number.POSITIVE_INFINITY,
 };
 
 /** @param {number | null} site */
@@ -142,17 +169,21 @@ async function place(position) {
   }
 }
 
-/** @param {CampaignRulesRequest} rules */
-async function plan(rules) {
-  const { data } = /** @type {Answer<Campaign>} */ (await post(`${address}/plan`, { rules }));
+/** @param {CampaignRulesRequest} rules @param {string} [key] of all tries */
+async function plan(rules, key = freshKey()) {
+  const headers = { "Idempotency-Key": key };
+  const { data } = /** @type {Answer<Campaign>} */ (await post(`${address}/plan`, { rules }, { headers }));
   campaign = data;
-  problem = "";
+  problem = null;
   draw();
-  void planned();
+  followPlanning().catch(tell);
 }
 
 function draw() {
-  if (!campaign) return;
+  if (!campaign) {
+    setChildren(byId("campaign-days"), problemNotice());
+    return;
+  }
   const { name, schedule, target_count } = campaign;
   document.title = `${name} · Spanwise`;
   for (const id of ["campaign-name", "bar-title"]) byId(id).textContent = name;
@@ -185,7 +216,13 @@ const footWords = (isProven) =>
 
 function problemNotice() {
   if (!problem) return null;
-  return h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, problem));
+  const again = h("button", { type: "button", class: "text-button", onclick: () => void reload() }, t("Load again"));
+  return h(
+    "div",
+    { class: "notice critical", role: "alert" },
+    icon("circle-alert"),
+    h("p", {}, problem.words, " ", problem.canRetry && again),
+  );
 }
 
 function drawJob() {
@@ -211,11 +248,12 @@ async function stop() {
 
 async function planAgain() {
   if (!campaign) return;
-  await openRules({
+  await openedOrTold({
     title: t("Plan this campaign again"),
     act: t("Plan"),
     rules: campaign.rules,
-    send: ({ rules }) => plan(rules),
+    send: ({ rules, key }) => plan(rules, key),
+    hint: t("The missions of this campaign are replaced, with all changes made to them."),
   });
 }
 
@@ -276,8 +314,6 @@ open({
   async load() {
     layer.addTo(map.map, map.view.palette().fonts);
     map.onRecolour((palette) => layer.recolour(map.map, palette.fonts));
-    await load();
-    fit({ animate: false });
-    void planned();
+    void reload();
   },
 });

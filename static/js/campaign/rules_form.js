@@ -1,9 +1,10 @@
 /** The form of a campaign: where crews start, how far UAVs may be from a launch site, and how long a working day is. */
 
-import { ApiError, get } from "../api.js";
+import { ApiError, freshKey, get } from "../api.js";
 import { h } from "../dom.js";
 import { choiceField, numberField, switchField, textField } from "../page/fields.js";
 import { open } from "../page/keyboard.js";
+import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { coordinateText, LONG_UNIT } from "../units.js";
 
@@ -12,7 +13,7 @@ import { coordinateText, LONG_UNIT } from "../units.js";
 
 /** @typedef {{ name: string, position: number[] }} Place where a crew can start, and a launch site */
 
-const MAX_BASES = 200;
+const MAX_BASES = 150; // of 200 launch sites
 /** @satisfies {Omit<CampaignRulesRequest, "start">} */
 const USUAL = {
   crews: 1,
@@ -40,13 +41,15 @@ async function bases() {
  * @param {string} [options.name] proposed name of a new campaign; without it the name is not asked for
  * @param {CampaignRules | null} [options.rules] those of the campaign as it is
  * @param {Place[]} [options.starts] other places where crews can start
- * @param {(stated: { name: string, rules: CampaignRulesRequest }) => Promise<unknown>} options.send
+ * @param {string} [options.hint]
+ * @param {(stated: { name: string, rules: CampaignRulesRequest, key: string }) => Promise<unknown>} options.send `key`: of all its tries
  */
-export async function openRules({ title, act, name, rules = null, starts = [], send }) {
-  const known = [...(await bases()), ...starts];
-  const places =
-    rules && !known.some(({ position }) => isAt(position, rules.start)) ? [placeOf(rules), ...known] : known;
-  const own = rules?.sites.filter(({ position }) => !known.some((base) => isAt(base.position, position))) ?? [];
+async function openRules({ title, act, name, rules = null, starts = [], hint = "", send }) {
+  const key = freshKey();
+  const known = await bases();
+  const all = [...known, ...starts];
+  const places = rules && !all.some(({ position }) => isAt(position, rules.start)) ? [placeOf(rules), ...all] : all;
+  const own = (rules?.sites ?? []).filter(({ position }) => !known.some((base) => isAt(base.position, position)));
   const fields = fieldsOf({ ...USUAL, ...rules }, places, { name, start: rules?.start ?? null });
   const wrong = h("p", { class: "field-error", role: "alert", hidden: true });
   const go = h("button", { class: "button primary" }, act);
@@ -60,6 +63,7 @@ export async function openRules({ title, act, name, rules = null, starts = [], s
       { class: "campaign-fields" },
       Object.values(others).map(({ element }) => element),
     ),
+    hint && h("p", { class: "caption" }, hint),
     wrong,
     h(
       "div",
@@ -87,20 +91,33 @@ export async function openRules({ title, act, name, rules = null, starts = [], s
       announce(t("Without bases, launch sites must be proposed."));
       return;
     }
+    if (go.disabled) return;
     announce("");
     go.setAttribute("aria-busy", "true");
+    go.disabled = true;
     try {
-      await send({ name: nameField.read(), rules: statedRules(fields, places, { known, own }) });
+      await send({ key, name: nameField.read(), rules: statedRules(fields, places, { known, own }) });
       dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       announce(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message);
     } finally {
       go.removeAttribute("aria-busy");
+      go.disabled = false;
     }
   });
   open(dialog);
   (name === undefined ? fields.start : nameField).input.focus();
+}
+
+/** Open the form; where the server cannot be reached for it, say so. @param {Parameters<typeof openRules>[0]} options */
+export async function openedOrTold(options) {
+  try {
+    await openRules(options);
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
+  }
 }
 
 /**
@@ -128,16 +145,15 @@ function fieldsOf(values, places, { name, start: startsAt }) {
       required: true,
       factor: LONG_UNIT.metres,
       unit: LONG_UNIT.unit,
-      min: 0.1,
-      max: 50,
-      hint: t("Such as the range of sight or of the radio."),
+      ...boundsIn(100, 50_000, LONG_UNIT.metres),
+      hint: t("Such as the range of sight or of the radio. Routes may lead farther; the plan says where."),
     }),
     flights: numberField("flights", t("Flights of each UAV at a site"), values.flights, {
       required: true,
       min: 1,
       max: 20,
       step: 1,
-      hint: t("As many as there are charged batteries."),
+      hint: t("Each on a full battery; batteries are charged between sites."),
     }),
     set_up_min: numberField("set_up_min", t("Set-up and packing at a site"), values.set_up_min, {
       required: true,
@@ -148,8 +164,7 @@ function fieldsOf(values, places, { name, start: startsAt }) {
     drive_kmh: numberField("drive_kmh", t("Driving speed"), values.drive_kmh, {
       required: true,
       factor: LONG_UNIT.metres / 1000,
-      min: 5,
-      max: 130,
+      ...boundsIn(5, 130, LONG_UNIT.metres / 1000),
       digits: 0,
       unit: LONG_UNIT.unit === "km" ? "km/h" : "mph",
       hint: t("Drives are estimated from the straight line."),
@@ -163,7 +178,7 @@ function fieldsOf(values, places, { name, start: startsAt }) {
       },
     ),
     proposes_sites: switchField("proposes_sites", t("Propose launch sites"), values.proposes_sites, {
-      hint: t("At towers, outside no-fly zones. Check the access by road yourself."),
+      hint: t("40 m beside towers, outside no-fly zones. Check each place, and its access by road, yourself."),
     }),
   };
 }
@@ -184,6 +199,12 @@ const statedRules = (fields, places, { known, own }) => ({
   drive_kmh: fields.drive_kmh.read() ?? USUAL.drive_kmh,
   sites: [...(fields.uses_bases.read() ? known : []), ...own],
   proposes_sites: fields.proposes_sites.read(),
+});
+
+/** Bounds in shown units, rounded inwards to a tenth. @param {number} min @param {number} max @param {number} factor */
+const boundsIn = (min, max, factor) => ({
+  min: Math.ceil((10 * min) / factor) / 10,
+  max: Math.floor((10 * max) / factor) / 10,
 });
 
 /** @param {number[]} left @param {number[]} right */

@@ -1,6 +1,7 @@
 /** The days of a campaign: who drives when to which site, and what is flown there. */
 
 import { h, icon } from "../dom.js";
+import { MISSION_STATES } from "../domain/planned_state.js";
 import { t, tn } from "../text.js";
 import { coordinateText, durationText, lengthText } from "../units.js";
 
@@ -11,23 +12,14 @@ import { coordinateText, durationText, lengthText } from "../units.js";
  * @property {(number: number | null) => void} point at a mission by its number
  * @property {(number: number) => void} show a mission on the map
  * @property {((site: number) => void) | null} move a launch site by its place; null: the user cannot
+ * @property {() => number} reach_m greatest distance of a target from its launch site
  */
 
 const DAY_BEGINS_H = 8;
 const COLOURS = 8; // of routes
-const STATE_WORDS = {
-  draft: t("Draft"),
-  planned: t("Planned"),
-  approved: t("Approved"),
-  dispatched: t("Uploaded"),
-  active: t("In flight"),
-  completed: t("Completed"),
-  aborted: t("Aborted"),
-  failed: t("Failed"),
-};
 
-/** The number of the colour of a day, from 1. @param {number} day from 1 */
-export const colourOfDay = (day) => ((day - 1) % COLOURS) + 1;
+/** The number of the colour of a day, from 1; 0 for none. @param {number} day from 1; 0: none */
+export const colourOfDay = (day) => (day === 0 ? 0 : ((day - 1) % COLOURS) + 1);
 
 /** "08:40": clock of a working day that begins at 8. @param {number} seconds */
 export function dayClock(seconds) {
@@ -140,13 +132,23 @@ function missionLine(schedule, mission, acts, times) {
               },
               name,
             ),
-        h("span", { class: `chip ${state ?? "draft"}` }, state === null ? t("Deleted") : STATE_WORDS[state]),
+        h("span", { class: `chip ${state ?? "draft"}` }, state === null ? t("Deleted") : MISSION_STATES[state]),
       ),
       h("small", {}, figures),
+      noteOf(mission, acts.reach_m()),
     ),
     acts.move && iconButton("move-3d", t("Move {name}", { name }), () => acts.move?.(mission.site)),
     iconButton("map-pin", t("Show {name} on the map", { name }), () => acts.show(number)),
   );
+}
+
+/** That routes lead beyond the reach, and that the plan warns. @param {CampaignMission} mission @param {number} reach_m */
+function noteOf({ farthest_m, warnings }, reach_m) {
+  const notes = [
+    farthest_m > reach_m && t("Routes lead up to {distance} from the site.", { distance: lengthText(farthest_m) }),
+    warnings > 0 && tn(warnings, "{count} warning in its plan.", "{count} warnings in its plan."),
+  ].filter(Boolean);
+  return notes.length > 0 && h("small", { class: "note" }, icon("triangle-alert", "small"), notes.join(" "));
 }
 
 /** @param {string} image @param {string} label @param {() => void} act */

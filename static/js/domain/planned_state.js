@@ -1,6 +1,17 @@
-/** The state of a planned mission, told truly: whether its plan reaches all, some or none of its targets. */
+/** Words for the states of missions; of a planned one, told truly: whether its plan reaches all, some or none of its targets. */
 
 import { t } from "../text.js";
+
+export const MISSION_STATES = {
+  draft: t("Draft"),
+  planned: t("Planned"),
+  approved: t("Approved"),
+  dispatched: t("Uploaded"),
+  active: t("In flight"),
+  completed: t("Completed"),
+  aborted: t("Aborted"),
+  failed: t("Failed"),
+};
 
 /** A chip of its own, beside the state: the newest rehearsal of the present plan failed. */
 export const REHEARSAL_FAILED = t("Rehearsal failed");

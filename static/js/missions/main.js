@@ -2,6 +2,7 @@
 
 import { signInAddress } from "../api.js";
 import { byId, find, h, icon } from "../dom.js";
+import { MISSION_STATES } from "../domain/planned_state.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
@@ -11,7 +12,7 @@ import { countOfFields, isFiltered, nextOrder, PAGE_SIZE } from "./asked.js";
 import { showCampaigns } from "./campaigns.js";
 import { createDemo } from "./demo.js";
 import { createList } from "./list.js";
-import { missionRow, STATES } from "./rows.js";
+import { missionRow } from "./rows.js";
 import { isTourSeen, startTour } from "./tour.js";
 
 /** @import { TextName } from "./asked.js" */
@@ -275,7 +276,7 @@ function drawStates({ byState, deletedCount, asked }) {
   const chosen = asked.deleted ? DELETED : asked.state;
   const choices = [
     { value: "", words: t("All"), count: asked.deleted && !total ? null : total }, // not known on a page of deleted ones alone
-    ...Object.entries(STATES).map(([value, words]) => ({ value, words, count: byState[value] ?? 0 })),
+    ...Object.entries(MISSION_STATES).map(([value, words]) => ({ value, words, count: byState[value] ?? 0 })),
     { value: DELETED, words: t("Deleted"), count: deletedCount },
   ];
   const fieldset = byId("states");

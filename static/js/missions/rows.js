@@ -2,7 +2,7 @@
 
 import { find, h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";
-import { plannedChip, REHEARSAL_FAILED } from "../domain/planned_state.js";
+import { MISSION_STATES, plannedChip, REHEARSAL_FAILED } from "../domain/planned_state.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
@@ -22,16 +22,6 @@ import { sketch } from "./sketch.js";
  * @property {() => unknown} copyAddress
  */
 
-export const STATES = {
-  draft: t("Draft"),
-  planned: t("Planned"),
-  approved: t("Approved"),
-  dispatched: t("Uploaded"),
-  active: t("In flight"),
-  completed: t("Completed"),
-  aborted: t("Aborted"),
-  failed: t("Failed"),
-};
 const EDITABLE = ["draft", "planned"];
 const MAX_DOTS = 24;
 
@@ -262,7 +252,7 @@ function stateChips({ state, target_count, unassigned_count, has_failed_rehearsa
   const { className, words } =
     state === "planned"
       ? plannedChip(target_count, unassigned_count)
-      : { className: `chip ${state}`, words: STATES[state] ?? state };
+      : { className: `chip ${state}`, words: MISSION_STATES[state] ?? state };
   return [
     h("span", { class: className }, words),
     has_failed_rehearsal && [" ", h("span", { class: "chip failed" }, REHEARSAL_FAILED)],

@@ -2,7 +2,7 @@
 
 import { byId, find, h, icon } from "../dom.js";
 import { colourClass } from "../domain/palette.js";
-import { STATES as MISSION_STATES } from "../missions/rows.js";
+import { MISSION_STATES } from "../domain/planned_state.js";
 import {
   capital,
   factsOf,

@@ -4,18 +4,19 @@ from typing import Any
 from unittest import mock
 
 import pytest
+from django.contrib.gis.geos import Point
 from django.test import Client
 
 from inspection.geodesy.wgs84 import WGS84
 from missions import tasks
-from missions.models import Campaign, Mission, MissionState
+from missions.models import Campaign, Mission, MissionState, Uav, UavType
 from missions.services import campaigns
-from missions.services.planning.planner import make_plan as planner_make_plan
+from missions.services.planning.planner import make_plan
 from planning.campaigns import campaign as planner
 from planning.campaigns.crew_days import ROAD_FACTOR
 from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
-from tests.missions.worlds import TOWER_LONS, World, world, zone_around
+from tests.missions.worlds import TOWER_LONS, World, rebuild, world, zone_around
 from workspace.models import Job, JobState, Organisation, Role
 
 pytestmark = pytest.mark.django_db
@@ -42,6 +43,11 @@ def body(here: World, *more: Any, name: str = "Line 7", **rules: Any) -> dict[st
         "targets": [*({"asset": tower.pk} for tower in here.towers), *more],
         "rules": {"start": START, "reach_m": 300.0} | rules,
     }
+
+
+def a_stored_uav() -> Uav:
+    unlimited = UavType.objects.create(name="Unlimited", range_unlimited=True)
+    return Uav.objects.create(name="Kestrel", uav_type=unlimited, location=Point(10.001, 55.995, srid=4326))
 
 
 def planned(client: Client, asked: dict[str, Any]) -> dict[str, Any]:
@@ -98,7 +104,7 @@ def test_the_days_add_up(here, client):
 
 def test_work_that_does_not_fit_a_day_is_split(here, client):
     """A working day that holds the drive, the set-up and some minutes of flying: six towers from one site take several days."""
-    rules = {"day_h": 1.0, "set_up_min": 52.0, "reach_m": 5_000.0, "drive_kmh": 60.0}
+    rules = {"day_h": 1.0, "set_up_min": 51.0, "reach_m": 5_000.0, "drive_kmh": 60.0}
     schedule = planned(client, body(here, **rules))["schedule"]
     assert len(schedule["sites"]) == 1
     assert len(schedule["missions"]) > 1
@@ -107,10 +113,10 @@ def test_work_that_does_not_fit_a_day_is_split(here, client):
     assert [row["is_too_long"] for row in schedule["missions"]] == [False] * len(schedule["missions"])
 
 
-def test_a_mission_longer_than_a_day_is_kept_and_named(here, client):
+def test_targets_whose_drive_takes_the_day_are_named(here, client):
     schedule = planned(client, body(here, day_h=1.0, set_up_min=59.0, reach_m=5_000.0, drive_kmh=60.0))["schedule"]
-    assert schedule["days"] == []
-    assert [row["is_too_long"] for row in schedule["missions"]] == [True] * 6
+    assert (schedule["days"], schedule["missions"]) == ([], [])
+    assert {item["reason"] for item in schedule["left_out"]} == {"beyond_working_day"}
 
 
 def test_a_later_mission_flies_what_the_batteries_of_one_do_not_hold(here, client):
@@ -121,6 +127,8 @@ def test_a_later_mission_flies_what_the_batteries_of_one_do_not_hold(here, clien
     assert len(schedule["missions"]) > 1
     lengths_m = [Mission.objects.get(pk=row["mission"]).routes.get().length_m for row in schedule["missions"]]
     assert max(lengths_m) <= 2_000.0
+    stored = [target.asset_id for row in schedule["missions"] for target in Mission.objects.get(pk=row["mission"]).targets.all()]
+    assert sorted(stored) == sorted(tower.pk for tower in here.towers)  # a mission holds what it visits, and nothing else
 
 
 def test_targets_that_no_mission_visits_are_named_with_the_reason(here, client):
@@ -145,6 +153,75 @@ def test_no_site_is_inside_a_zone(here, client):
     places = [site["position"] for site in schedule["sites"]]
     assert places
     assert all(distance_m(place, (lon, LINE_LAT)) > 30.0 for place in places for lon in TOWER_LONS[::2])
+
+
+def test_proposed_sites_are_clear_of_towers_and_wires(here, client):
+    for site in planned(client, body(here))["schedule"]["sites"]:
+        assert min(distance_m(site["position"], tower.centre.coords) for tower in here.towers) == pytest.approx(40.0, abs=0.1)
+        is_beside_wires = TOWER_LONS[0] < site["position"][0] < TOWER_LONS[-1]
+        assert not is_beside_wires or abs(site["position"][1] - LINE_LAT) * 111_000.0 > 25.0
+
+
+def test_uavs_of_several_flights_that_hover_at_their_end_return_in_a_campaign(here, client):
+    asked = body(here)
+    asked["uavs"][0] |= {"sorties": 3, "end_action": "hover"}
+    schedule = planned(client, asked)["schedule"]
+    assert {Mission.objects.get(pk=row["mission"]).mission_uavs.get().end_action for row in schedule["missions"]} == {"return"}
+
+
+def test_figures_and_ids_of_other_systems_come_into_the_missions(here, client):
+    uav = a_stored_uav()
+    asked = body(here)
+    asked["uavs"] = [{"id": uav.pk, "position": [10.001, 55.995], "max_range_m": 5_000.0}]
+    asked["targets"][0] |= {"external_id": "WO-7", "attributes": {"team": "North"}}
+    rows = [Mission.objects.get(pk=row["mission"]) for row in planned(client, asked)["schedule"]["missions"]]
+    assert all(row.mission_uavs.get().own_figures == ["max_range_m"] for row in rows)
+    assert all(row.mission_uavs.get().uav_id == uav.pk for row in rows)
+    assert [(t.external_id, t.attributes) for row in rows for t in row.targets.all() if t.asset_id == here.towers[0].pk] == [
+        ("WO-7", {"team": "North"})
+    ]
+
+
+def test_no_stored_uav_is_with_two_crews(here, client):
+    uav = a_stored_uav()
+    asked = body(here, crews=2, day_h=1.0, set_up_min=50.0, drive_kmh=60.0)
+    asked["uavs"] = [{"id": uav.pk, "position": [10.001, 55.995]}]
+    schedule = planned(client, asked)["schedule"]
+    crews = {visit["mission"]: day["crew"] for day in schedule["days"] for visit in day["visits"]}
+    assert set(crews.values()) == {1, 2}
+    for row in schedule["missions"]:
+        of_mission = Mission.objects.get(pk=row["mission"]).mission_uavs.get()
+        assert of_mission.uav_id == (uav.pk if crews[row["number"]] == 1 else None)
+
+
+def test_uavs_and_assets_that_were_deleted_meanwhile_do_not_stop_it(here, client):
+    uav = a_stored_uav()
+    asked = body(here)
+    asked["uavs"] = [{"id": uav.pk, "position": [10.001, 55.995]}]
+    answer = post(client, "campaigns", asked).json()
+    uav.delete()
+    gone = here.towers[0].pk
+    here.line.delete()
+    here.towers[0].delete()
+    rebuild()
+    tasks.plan_campaign(answer["job"])
+    schedule = client.get(f"/api/v1/campaigns/{answer['id']}").json()["schedule"]
+    assert [(item["target"], item["reason"]) for item in schedule["left_out"] if item["target"] == 0] == [(0, "asset_gone")]
+    assert not Mission.objects.filter(targets__asset_id=gone).exists()
+
+
+def test_deleted_while_it_is_planned_its_job_is_cancelled(here, client):
+    answer = post(client, "campaigns", body(here)).json()
+    assert client.delete(f"/api/v1/campaigns/{answer['id']}").status_code == 204
+    assert Job.objects.get(pk=answer["job"]).state == JobState.CANCELLED
+    assert post(client, f"campaigns/{answer['id']}/plan", {"rules": answer["rules"]}).status_code == 404
+
+
+def test_an_organisation_has_two_campaigns_planned_at_a_time(here, client):
+    for name in ("North", "South"):
+        assert post(client, "campaigns", body(here, name=name)).status_code == 202
+    assert post(client, "campaigns", body(here, name="East")).status_code == 429
+    assert Campaign.objects.count() == 2
 
 
 def test_planned_again_the_missions_are_replaced_unless_one_is_approved(here, client):
@@ -175,10 +252,10 @@ def test_a_stopped_job_stores_nothing_and_a_second_one_waits_for_it(here, client
     answer = post(client, "campaigns", body(here)).json()
     again = post(client, f"campaigns/{answer['id']}/plan", {"rules": answer["rules"]})
     assert (again.status_code, again.json()["error"]["code"]) == (409, "campaign_is_planned")
-    cancels = mock.Mock(side_effect=[False, True])  # asked before the first mission is planned, and after it
-    with mock.patch.object(tasks.JobWatch, "stop", lambda watch: cancels()), pytest.MonkeyPatch.context() as patched:
-        patched.setattr(campaigns, "make_plan", lambda **asked: planner_make_plan(request=asked["request"]))
+    plan = mock.Mock(side_effect=lambda **asked: make_plan(request=asked["request"]))
+    with mock.patch.object(campaigns, "make_plan", plan), mock.patch.object(tasks.JobWatch, "stop", lambda watch: plan.called):
         tasks.plan_campaign(answer["job"])
+    assert plan.call_count == 1
     assert Job.objects.get(pk=answer["job"]).state == JobState.CANCELLED
     assert not Mission.objects.exists()
     assert client.get(f"/api/v1/campaigns/{answer['id']}").json()["schedule"] is None

@@ -1,7 +1,7 @@
 /** Turn the targets and UAVs of the page into a campaign: missions from several launch sites over several days. */
 
 import { post } from "../../api.js";
-import { openRules } from "../../campaign/rules_form.js";
+import { openedOrTold } from "../../campaign/rules_form.js";
 import { t } from "../../text.js";
 import { requestOf } from "../selection.js";
 import { proposedName } from "../targets/proposed_name.js";
@@ -11,6 +11,7 @@ import { proposedName } from "../targets/proposed_name.js";
 /** @import { MissionPageState } from "../types.d.ts" */
 
 const MAX_NAME_LENGTH = 150;
+const MAX_PLACE_LENGTH = 100;
 
 /**
  * The body of /campaigns without its rules: UAVs start at launch sites, so departure, locks and ends of routes do not count.
@@ -33,13 +34,19 @@ export function whyNoCampaign({ selection }) {
 /** Ask for crews and reach, and open the page of the campaign. @param {MissionPageState} state */
 export async function planFromLaunchSites(state) {
   const asked = campaignOf(state);
-  await openRules({
+  await openedOrTold({
     title: t("Plan from launch sites over several days"),
     act: t("Plan the campaign"),
     name: asked.name,
-    starts: state.selection.uavs.map(({ name, position }) => ({ name: t("Start of {uav}", { uav: name }), position })),
-    async send({ name, rules }) {
-      const { data } = /** @type {Answer<Campaign>} */ (await post("/campaigns", { ...asked, name, rules }));
+    starts: state.selection.uavs.map(({ name, position }) => ({
+      name: t("Start of {uav}", { uav: name }).slice(0, MAX_PLACE_LENGTH),
+      position,
+    })),
+    async send({ name, rules, key }) {
+      const headers = { "Idempotency-Key": key };
+      const { data } = /** @type {Answer<Campaign>} */ (
+        await post("/campaigns", { ...asked, name, rules }, { headers })
+      );
       location.assign(`/campaigns/${data.id}`);
     },
   });

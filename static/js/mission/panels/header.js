@@ -4,7 +4,7 @@ import { openAlertLimits } from "../../alert_limits/dialog.js";
 import { ApiError } from "../../api.js";
 import { byId, h, icon, refill } from "../../dom.js";
 import { groundCauses } from "../../domain/flying.js";
-import { plannedChip, REHEARSAL_FAILED } from "../../domain/planned_state.js";
+import { MISSION_STATES, plannedChip, REHEARSAL_FAILED } from "../../domain/planned_state.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
 import { markSimulated } from "../../simulated.js";
@@ -36,16 +36,6 @@ import { shownChanges, uavNotice } from "./uavs/changes.js";
  */
 /** @typedef {CardContext & OfNotices} NoticeContext */
 
-const STATE_WORDS = {
-  draft: t("Draft"),
-  planned: t("Planned"),
-  approved: t("Approved"),
-  dispatched: t("Uploaded"),
-  active: t("In flight"),
-  completed: t("Completed"),
-  aborted: t("Aborted"),
-  failed: t("Failed"),
-};
 const phone = matchMedia("(max-width: 720px)");
 const MAX_CAUSES = 3;
 
@@ -199,7 +189,7 @@ function drawHead(state, canPlan) {
   const missed = name === "planned" && state.plan ? unassignedOf(state.plan).length : 0;
   const planned = plannedChip(state.selection.targets.length, missed);
   chip.className = name === "planned" ? planned.className : `chip ${name}`;
-  chip.textContent = name === "planned" ? planned.words : STATE_WORDS[name];
+  chip.textContent = name === "planned" ? planned.words : MISSION_STATES[name];
   const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
   markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
   drawRehearsalChip(state);
