@@ -39,10 +39,11 @@ def places_beside(courses: Sequence[Sequence[LonLat]], airspace: Airspace) -> li
     aside = np.array([place for course in courses for place in _aside(course)])
     if not len(aside):
         return []
-    nothing = np.full(len(aside), NONE, dtype=np.int64)
-    beside, _ = points_beside(aside, np.zeros(len(aside)), nothing, nothing, np.inf, spans_of(airspace.network))
+    columns = np.repeat(aside, 2, axis=0)  # up from the ground and down to it
+    nothing = np.full(len(columns), NONE, dtype=np.int64)
+    beside, _ = points_beside(columns, np.zeros(len(columns)), nothing, nothing, np.inf, spans_of(airspace.network))
     is_clear = np.ones(len(aside), dtype=bool)
-    is_clear[beside] = False
+    is_clear[beside // 2] = False
     places = dict.fromkeys(LonLat(*map(float, place)) for place in np.round(aside[is_clear], 7))
     return [place for place in places if zone_at(place, airspace) is None]
 
