@@ -15,7 +15,7 @@ import { openedOrTold } from "./rules_form.js";
 import { blockedCard, dayCards, factsOf, leftOutCard, tooLongCard } from "./schedule_view.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { Campaign, CampaignRoutes, CampaignRulesRequest, Job } from "../api_types.d.ts" */
+/** @import { Campaign, CampaignRoutes, CampaignRulesRequest, CampaignSchedule, Job } from "../api_types.d.ts" */
 /** @import { Box } from "../map/types.d.ts" */
 /** @import { CampaignPageData } from "./types.d.ts" */
 
@@ -205,14 +205,21 @@ function draw() {
       ),
     ...(schedule ? dayCards(schedule, acts) : []),
     schedule && tooLongCard(schedule, acts),
-    schedule && schedule.days.length > 0 && h("p", { class: "caption campaign-foot" }, footWords(schedule.is_proven)),
+    schedule && schedule.days.length > 0 && h("p", { class: "caption campaign-foot" }, footWords(schedule)),
   );
   drawJob();
 }
 
-/** @param {boolean} isProven */
-const footWords = (isProven) =>
-  `${isProven ? t("Proven: no order of these missions takes fewer days or less driving.") : ""} ${t("Times count from a start at 08:00; drives are estimated from the straight line.")}`.trim();
+/** @param {CampaignSchedule} schedule */
+const footWords = ({ is_proven, sites }) =>
+  [
+    is_proven && t("Proven: no order of these missions takes fewer days or less driving."),
+    sites.some(({ name }) => !name) &&
+      t("Proposed launch sites lie 40 m beside towers: check each place and its access."),
+    t("Times count from a start at 08:00; drives are estimated from the straight line."),
+  ]
+    .filter(Boolean)
+    .join(" ");
 
 function problemNotice() {
   if (!problem) return null;
