@@ -23,6 +23,7 @@ BEYOND_REACH, ASSET_GONE, BEYOND_DAY = "beyond_reach", "asset_gone", "beyond_wor
 NEVER_REACHED = {"inside_zone", ASSET_GONE}  # from no site, and in no later mission
 MIN_WORK_S = 300.0  # a day that leaves less for flying than this at a site is not worth its drive
 MAX_MISSIONS = 200
+SCHEDULE_SEARCH_S = 3.0  # of a schedule that is too large to be proven
 ROUNDS = 2  # of choosing sites: in the second one for targets that could not be flown from their first site
 
 PlanJson = dict[str, Any]  # see planning/plan_json.py
@@ -131,6 +132,7 @@ def plan_campaign(
         [mission.work_s for mission in work.missions],
         rules.crews,
         stop=stop,
+        search_s=SCHEDULE_SEARCH_S,
     )
     if stop():
         raise Stopped

@@ -1,13 +1,15 @@
 """Launch sites: places where crews could launch, and the choice of sites so that every target lies within reach of one.
 
-It is a set cover: sites are added greedily by the metres that they cover, redundant ones are removed, and each is then moved to the
-candidate nearest to its targets. Given sites are used before others are proposed.
+It is a set cover, solved by HiGHS: the fewest sites, each then moved to the candidate nearest to its targets. Given sites are used before
+others are proposed.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.sparse import csr_array
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84, distance_m
@@ -19,6 +21,7 @@ from planning.trajectory.waypoints import NONE
 
 POINT_M = 1.0  # counted for a target that is a point
 ASIDE_M = 40.0  # of a proposed site from the tower beside which it lies: farther than arms of towers and wires in the wind reach
+MAX_COVER_S = 10.0
 NEAREST = 50  # candidates that are looked at to name the nearest one to a target out of reach
 
 
@@ -72,9 +75,9 @@ def choose_sites(
     farthest_m, mean_m = _distances_m(targets, candidates, reach_m, stop)
     length_m = np.array([_length_m(target) for target in targets])
     reaches = farthest_m <= reach_m
-    chosen = _covering(reaches[:, :given], mean_m[:, :given], length_m)
+    chosen = _covering(reaches[:, :given], length_m)
     uncovered = np.flatnonzero(~np.asarray(reaches[:, chosen]).any(axis=1))
-    proposed = _covering(reaches[uncovered], mean_m[uncovered], length_m[uncovered])
+    proposed = _covering(reaches[uncovered], length_m[uncovered])
     chosen += _moved_closer(proposed, reaches[uncovered], mean_m[uncovered], length_m[uncovered])
     site_of = [_closest(chosen, reaches[target], mean_m[target]) for target in range(len(targets))]
     used = [place for place in range(len(chosen)) if place in site_of]  # a proposed site can take all that a given one had
@@ -111,26 +114,29 @@ def _length_m(target: Sequence[LonLat]) -> float:
     return max(POINT_M, float(distance_m(points[:-1], points[1:]).sum())) if len(points) > 1 else POINT_M
 
 
-def _covering(reaches: BoolArray, mean_m: FloatArray, length_m: FloatArray) -> list[int]:
-    """Return candidates that cover all targets which any of them covers, none of them redundant."""
+def _covering(reaches: BoolArray, length_m: FloatArray) -> list[int]:
+    """Return the fewest candidates, as far as they are found in time, that cover all targets which any candidate covers."""
+    coverable = np.any(reaches, axis=1)
+    if not coverable.any():
+        return []
+    found = milp(
+        np.ones(reaches.shape[1]),
+        integrality=np.ones(reaches.shape[1], dtype=np.int64),
+        bounds=Bounds(0.0, 1.0),
+        constraints=LinearConstraint(csr_array(reaches[coverable].astype(np.float64)), lb=1.0),
+        options={"time_limit": MAX_COVER_S},
+    )
+    return _greedily(reaches, length_m) if found.x is None else np.flatnonzero(found.x > 0.5).tolist()
+
+
+def _greedily(reaches: BoolArray, length_m: FloatArray) -> list[int]:
+    """Return candidates that cover all targets which any of them covers, each the one that adds most metres."""
     chosen: list[int] = []
     uncovered: BoolArray = np.any(reaches, axis=1)
     while uncovered.any():
-        gain_m = (reaches & uncovered[:, None]).T @ length_m
-        spread_m = np.where(reaches & uncovered[:, None], mean_m, 0.0).T @ length_m
-        chosen.append(int(np.lexsort((spread_m, -np.round(gain_m, 3)))[0]))
+        chosen.append(int(np.argmax((reaches & uncovered[:, None]).T @ length_m)))
         uncovered &= ~reaches[:, chosen[-1]]
-    return _without_redundant(chosen, reaches, length_m)
-
-
-def _without_redundant(chosen: list[int], reaches: BoolArray, length_m: FloatArray) -> list[int]:
-    """Return the sites without those whose targets others cover, those that cover least removed first."""
-    kept = list(chosen)
-    for site in sorted(chosen, key=lambda site: float(length_m @ reaches[:, site])):
-        others = [other for other in kept if other != site]
-        if (reaches[:, others].any(axis=1) | ~reaches[:, site]).all():
-            kept = others
-    return kept
+    return chosen
 
 
 def _moved_closer(sites: list[int], reaches: BoolArray, mean_m: FloatArray, length_m: FloatArray) -> list[int]:
