@@ -28,6 +28,9 @@ RULES = CampaignRules(Crews(LonLat(0.0, 0.0)))  # the defaults
 class LaunchSiteSerializer(KnownFieldsSerializer):
     name = serializers.CharField(max_length=100, allow_blank=True, required=False, default="")
     position = PositionField()
+    is_required = serializers.BooleanField(
+        required=False, default=False, help_text="used wherever it is the nearest one; others are used where they are needed"
+    )
 
 
 class CampaignRulesSerializer(KnownFieldsSerializer):

@@ -18,9 +18,9 @@ from missions.services.planning.planner import make_plan
 from operation.reasons import Reason
 from planning.assignment.options import refuse_contradictions
 from planning.campaigns.campaign import PlannedCampaign, SiteMission, Stopped, at_any_site, plan_campaign
-from planning.campaigns.rules import CampaignRules, rules_from_json, rules_to_json
+from planning.campaigns.rules import CampaignRules, LaunchSite, rules_from_json, rules_to_json
 from planning.progress import OnPlanProgress, PlanProgress
-from planning.request import BaseRequest, PlanRequest, UavRequest, request_from_json, request_to_json
+from planning.request import PlanRequest, UavRequest, request_from_json, request_to_json
 from planning.solver.solver import Stop
 from workspace.audit import record_change
 from workspace.jobs.services import JobCancelled, TooManyJobs, cancel_job, create_job, finish_job
@@ -256,8 +256,8 @@ def _schedule_json(planned: PlannedCampaign, order: list[int], stored: list[Miss
     }
 
 
-def _site_json(site: BaseRequest) -> dict[str, Any]:
-    return {"name": site.name, "position": list(site.position)}
+def _site_json(site: LaunchSite) -> dict[str, Any]:
+    return {"name": site.name, "position": list(site.position), "is_required": site.is_required}
 
 
 def _mission_json(mission: SiteMission, sites: list[int], number: int, row: Mission, *, is_too_long: bool) -> dict[str, Any]:

@@ -13,9 +13,9 @@ from operation.reasons import Reason
 from planning.airspace import Airspace, zone_at
 from planning.campaigns.crew_days import Schedule, schedule, work_limit_s
 from planning.campaigns.launch_sites import choose_sites, places_beside
-from planning.campaigns.rules import CampaignRules
+from planning.campaigns.rules import CampaignRules, LaunchSite
 from planning.clearance.lost_link import LostLink
-from planning.request import BaseRequest, EndAction, LostLinkRequest, PlanRequest
+from planning.request import EndAction, LostLinkRequest, PlanRequest
 from planning.solver.solver import Stop
 from planning.trajectory.waypoints import WaypointKind
 
@@ -89,8 +89,8 @@ class UnvisitedTarget:
 class PlannedCampaign:
     """sites: proposed ones have no name. Schedule.days and Schedule.too_long number the missions. blocked: given sites inside zones."""
 
-    sites: tuple[BaseRequest, ...]
-    blocked: tuple[BaseRequest, ...]
+    sites: tuple[LaunchSite, ...]
+    blocked: tuple[LaunchSite, ...]
     missions: tuple[SiteMission, ...]
     schedule: Schedule
     left_out: tuple[UnvisitedTarget, ...]
@@ -118,7 +118,7 @@ def plan_campaign(
     given = [site for site in rules.sites if zone_at(site.position, airspace) is None]
     places = list(given)
     if rules.proposes_sites:
-        places += [BaseRequest("", place) for place in places_beside([course for course in courses if course], airspace)]
+        places += [LaunchSite("", place) for place in places_beside([course for course in courses if course], airspace)]
     work = _Work(courses, at_any_site(request, rules), rules, make_plan, stop)
     todo = [target for target, course in enumerate(courses) if course]
     work.leave_out((target for target, course in enumerate(courses) if not course), ASSET_GONE, Reason("asset_deleted"))
@@ -150,7 +150,7 @@ class _Work:
     rules: CampaignRules
     make_plan: MakePlan
     stop: Stop
-    sites: list[BaseRequest] = field(default_factory=list)
+    sites: list[LaunchSite] = field(default_factory=list)
     missions: list[SiteMission] = field(default_factory=list)
     left_out: dict[int, UnvisitedTarget] = field(default_factory=dict)
 
@@ -158,12 +158,19 @@ class _Work:
         for target in targets:
             self.left_out[target] = UnvisitedTarget(target, reason, [why.to_json()])
 
-    def fly_from(self, places: Sequence[BaseRequest], given: Sequence[BaseRequest], targets: Sequence[int]) -> list[int]:
+    def fly_from(self, places: Sequence[LaunchSite], given: Sequence[LaunchSite], targets: Sequence[int]) -> list[int]:
         """Choose sites for these targets and plan their missions. Returns the targets that might be flown from another site."""
         nearby = [place for place in places if work_limit_s(place.position, self.rules.crews) >= MIN_WORK_S]
         known = sum(place in given for place in nearby)
         courses = [self.courses[target] for target in targets]
-        choice = choose_sites(courses, [place.position for place in nearby], self.rules.reach_m, given=known, stop=self.stop)
+        choice = choose_sites(
+            courses,
+            [place.position for place in nearby],
+            self.rules.reach_m,
+            given=known,
+            required=[number for number, place in enumerate(nearby) if place.is_required],
+            stop=self.stop,
+        )
         if self.stop():
             raise Stopped
         for target, place, nearest_m in zip(targets, choice.site_of, choice.nearest_m, strict=True):

@@ -63,9 +63,14 @@ def _aside(course: Sequence[LonLat]) -> Iterator[tuple[float, float]]:
 
 
 def choose_sites(
-    targets: Sequence[Sequence[LonLat]], candidates: Sequence[LonLat], reach_m: float, given: int = 0, stop: Callable[[], bool] = bool
+    targets: Sequence[Sequence[LonLat]],
+    candidates: Sequence[LonLat],
+    reach_m: float,
+    given: int = 0,
+    required: Sequence[int] = (),
+    stop: Callable[[], bool] = bool,
 ) -> SiteChoice:
-    """Return launch sites among the candidates, of which the first `given` are used where they suffice.
+    """Return launch sites among the candidates, of which the first `given` are used where they suffice, and the required ones first.
 
     A target, lon/lat of its points in order, is within reach of a site if all of its points are within reach_m [m]. Once `stop` is true,
     the remaining targets have no site.
@@ -75,7 +80,9 @@ def choose_sites(
     farthest_m, mean_m = _distances_m(targets, candidates, reach_m, stop)
     length_m = np.array([_length_m(target) for target in targets])
     reaches = farthest_m <= reach_m
-    chosen = _covering(reaches[:, :given], length_m)
+    chosen = list(required)
+    unreached = np.flatnonzero(~np.asarray(reaches[:, chosen]).any(axis=1))
+    chosen += _covering(reaches[unreached, :given], length_m[unreached])
     uncovered = np.flatnonzero(~np.asarray(reaches[:, chosen]).any(axis=1))
     proposed = _covering(reaches[uncovered], length_m[uncovered])
     chosen += _moved_closer(proposed, reaches[uncovered], mean_m[uncovered], length_m[uncovered])

@@ -5,7 +5,15 @@ from typing import Any
 
 from inspection.geodesy import LonLat
 from planning.campaigns.crew_days import Crews
-from planning.request import BaseRequest
+
+
+@dataclass(frozen=True)
+class LaunchSite:
+    """A place where crews can launch; proposed ones have no name. is_required: used wherever it is the nearest one, needed or not."""
+
+    name: str
+    position: LonLat
+    is_required: bool = False
 
 
 @dataclass(frozen=True)
@@ -18,7 +26,7 @@ class CampaignRules:
     crews: Crews
     reach_m: float = 3_000.0
     flights: int = 4
-    sites: tuple[BaseRequest, ...] = ()
+    sites: tuple[LaunchSite, ...] = ()
     proposes_sites: bool = True
 
 
@@ -32,7 +40,7 @@ def rules_to_json(rules: CampaignRules) -> dict[str, Any]:
         "day_h": crews.day_s / 3600.0,
         "reach_m": rules.reach_m,
         "flights": rules.flights,
-        "sites": [{"name": site.name, "position": list(site.position)} for site in rules.sites],
+        "sites": [{"name": site.name, "position": list(site.position), "is_required": site.is_required} for site in rules.sites],
         "proposes_sites": rules.proposes_sites,
     }
 
@@ -45,5 +53,5 @@ def rules_from_json(value: dict[str, Any]) -> CampaignRules:
         set_up_s=value["set_up_min"] * 60.0,
         day_s=value["day_h"] * 3600.0,
     )
-    sites = tuple(BaseRequest(site["name"], LonLat(*site["position"])) for site in value["sites"])
+    sites = tuple(LaunchSite(site["name"], LonLat(*site["position"]), site["is_required"]) for site in value["sites"])
     return CampaignRules(crews, value["reach_m"], value["flights"], sites, value["proposes_sites"])

@@ -3405,6 +3405,11 @@ export interface components {
              *     ]
              */
             position: number[];
+            /**
+             * @description used wherever it is the nearest one; others are used where they are needed
+             * @default false
+             */
+            is_required: boolean;
         };
         LaunchSiteRequest: {
             /** @default  */
@@ -3417,6 +3422,11 @@ export interface components {
              *     ]
              */
             position: number[];
+            /**
+             * @description used wherever it is the nearest one; others are used where they are needed
+             * @default false
+             */
+            is_required: boolean;
         };
         LeftOut: {
             /** @description its place in the campaign's targets */

@@ -160,8 +160,10 @@ async function place(position) {
   const site = placing?.site ?? null;
   stopPlacing();
   if (!campaign?.schedule) return;
-  const sites = campaign.schedule.sites.map((one, index) => (index === site ? { name: "", position } : one));
-  if (site === null) sites.push({ name: "", position });
+  const sites = campaign.schedule.sites.map((one, index) =>
+    index === site ? { name: "", position, is_required: true } : one,
+  );
+  if (site === null) sites.push({ name: "", position, is_required: true });
   try {
     await plan({ ...campaign.rules, sites });
   } catch (error) {

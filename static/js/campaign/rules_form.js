@@ -11,7 +11,8 @@ import { coordinateText, LONG_UNIT } from "../units.js";
 /** @import { Answer } from "../api.js" */
 /** @import { BasePage, CampaignRules, CampaignRulesRequest } from "../api_types.d.ts" */
 
-/** @typedef {{ name: string, position: number[] }} Place where a crew can start, and a launch site */
+/** @typedef {{ name: string, position: number[] }} Place where crews can start */
+/** @typedef {Place & { is_required: boolean }} LaunchSite */
 
 const MAX_BASES = 150; // of 200 launch sites
 /** @satisfies {Omit<CampaignRulesRequest, "start">} */
@@ -22,14 +23,14 @@ const USUAL = {
   day_h: 8,
   reach_m: 3000,
   flights: 4,
-  sites: /** @type {Place[]} */ ([]),
+  sites: /** @type {LaunchSite[]} */ ([]),
   proposes_sites: /** @type {boolean} */ (true),
 };
 
-/** @returns {Promise<Place[]>} */
+/** @returns {Promise<LaunchSite[]>} */
 async function bases() {
   const { data } = /** @type {Answer<BasePage>} */ (await get(`/bases?limit=${MAX_BASES}`));
-  return data.results.map(({ name, position }) => ({ name, position }));
+  return data.results.map(({ name, position }) => ({ name, position, is_required: false }));
 }
 
 /**
@@ -186,7 +187,7 @@ function fieldsOf(values, places, { name, start: startsAt }) {
 /**
  * @param {ReturnType<typeof fieldsOf>} fields
  * @param {Place[]} places where crews can start
- * @param {{ known: Place[], own: Place[] }} sites bases, which the user may leave out, and launch sites set on the map
+ * @param {{ known: LaunchSite[], own: LaunchSite[] }} sites bases, which the user may leave out, and launch sites set on the map
  * @returns {CampaignRulesRequest}
  */
 const statedRules = (fields, places, { known, own }) => ({

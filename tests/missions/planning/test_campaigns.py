@@ -141,7 +141,7 @@ def test_targets_that_no_mission_visits_are_named_with_the_reason(here, client):
     assert "UAVs would have to fly up to" in left_out[6]["message"]
     assert left_out[2]["reason"] == "inside_zone"
     assert "Airport" in left_out[2]["message"]
-    assert schedule["sites"] == [{"name": "Yard", "position": [10.005, 55.998]}]
+    assert schedule["sites"] == [{"name": "Yard", "position": [10.005, 55.998], "is_required": False}]
 
 
 def test_no_site_is_inside_a_zone(here, client):

@@ -58,6 +58,15 @@ def test_given_sites_are_used_before_others_are_proposed():
     assert choice.site_of[2] == 0
 
 
+def test_a_required_site_is_used_for_the_targets_nearest_to_it():
+    targets = line(10)
+    sites = [LonLat(10.048, 56.002), LonLat(10.12, 56.002), LonLat(10.064, 56.002)]
+    choice = choose_sites(targets, sites, 5_000.0, given=3, required=[2])
+    is_sound(choice, targets, sites, 5_000.0)
+    assert choice.sites[0] == 2
+    assert choice.site_of[4] == 0
+
+
 def test_targets_beyond_reach_are_named_with_the_distance_that_it_would_take():
     targets = [*line(2), (LonLat(10.2, 56.0),)]
     choice = choose_sites(targets, [LonLat(10.0, 56.0)], 3_000.0, given=1)
