@@ -12,7 +12,7 @@ import { t, tn } from "../text.js";
 import { percentText } from "../units.js";
 import * as layer from "./campaign_layer.js";
 import { openedOrTold } from "./rules_form.js";
-import { blockedCard, dayCards, factsOf, leftOutCard, tooLongCard } from "./schedule_view.js";
+import { dayCards, factsOf, leftOutCard, tooLongCard, unusedSitesCard } from "./schedule_view.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Campaign, CampaignRoutes, CampaignRulesRequest, CampaignSchedule, Job } from "../api_types.d.ts" */
@@ -195,7 +195,7 @@ function draw() {
   setChildren(
     byId("campaign-days"),
     problemNotice(),
-    schedule && blockedCard(schedule),
+    unusedSitesCard(campaign),
     leftOutCard(campaign),
     isEmpty &&
       h(

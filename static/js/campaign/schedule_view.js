@@ -132,7 +132,8 @@ function missionLine(schedule, mission, acts, times) {
               },
               name,
             ),
-        h("span", { class: `chip ${state ?? "draft"}` }, state === null ? t("Deleted") : MISSION_STATES[state]),
+        state !== "planned" &&
+          h("span", { class: `chip ${state ?? "draft"}` }, state === null ? t("Deleted") : MISSION_STATES[state]),
       ),
       h("small", {}, figures),
       noteOf(mission, acts.reach_m()),
@@ -176,16 +177,32 @@ export function tooLongCard(schedule, acts) {
   );
 }
 
-/** Stated launch sites inside zones. @param {CampaignSchedule} schedule */
-export function blockedCard({ blocked_sites: blocked }) {
-  if (!blocked?.length) return null;
-  const words = tn(
-    blocked.length,
-    "{count} launch site is not used: it lies in a no-fly zone, or too near to one.",
-    "{count} launch sites are not used: they lie in a no-fly zone, or too near to one.",
+/** Launch sites that were stated and are not used: inside zones, or set by the user where others are nearer. @param {Campaign} campaign */
+export function unusedSitesCard({ schedule, rules }) {
+  if (!schedule) return null;
+  const { blocked_sites: blocked, sites } = schedule;
+  /** @param {CampaignSchedule["sites"]} among @param {number[]} place */
+  const has = (among, place) => among.some(({ position }) => position[0] === place[0] && position[1] === place[1]);
+  const idle = (rules.sites ?? []).filter(
+    ({ is_required, position }) => is_required && !has(sites, position) && !has(blocked, position),
   );
-  const names = blocked.map(({ name, position }) => name || coordinateText(position)).join(", ");
-  return h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, words, ` ${names}`));
+  const lines = [
+    blocked.length > 0 &&
+      tn(
+        blocked.length,
+        "{count} launch site is not used: it lies in a no-fly zone, or too near to one.",
+        "{count} launch sites are not used: they lie in a no-fly zone, or too near to one.",
+      ),
+    idle.length > 0 &&
+      tn(
+        idle.length,
+        "{count} launch site is not used: other sites are nearer to the targets in its reach.",
+        "{count} launch sites are not used: other sites are nearer to the targets in their reach.",
+      ),
+  ].filter(Boolean);
+  if (lines.length === 0) return null;
+  const names = [...blocked, ...idle].map(({ name, position }) => name || coordinateText(position)).join("; ");
+  return h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, lines.join(" "), ` ${names}`));
 }
 
 /** Targets that no mission visits, by cause. @param {Campaign} campaign */
