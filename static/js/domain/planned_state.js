@@ -2,6 +2,7 @@
 
 import { t } from "../text.js";
 
+/** @type {Record<string, string>} */
 export const MISSION_STATES = {
   draft: t("Draft"),
   planned: t("Planned"),

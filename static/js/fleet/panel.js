@@ -2,6 +2,7 @@
 
 import { get } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";
+import { MISSION_STATES } from "../domain/planned_state.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
@@ -11,7 +12,7 @@ import { mountCredentials } from "./credentials.js";
 import { mountTypeAirframe } from "./type_airframe.js";
 import { camerasToAdd, mountTypeCameras } from "./type_cameras.js";
 import { mountTypeLimits } from "./type_limits.js";
-import { MISSION_STATES, missingList, stateChip } from "./words.js";
+import { missingList, stateChip } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { UavConnection, UavMission, UavMissionPage, UavState } from "../api_types.d.ts" */

@@ -24,18 +24,6 @@ export const ENDS = [
   ["base", t("Land at the nearest base")],
 ];
 
-/** @type {Record<string, string>} */
-export const MISSION_STATES = {
-  draft: t("Draft"),
-  planned: t("Planned"),
-  approved: t("Approved"),
-  dispatched: t("Uploaded"),
-  active: t("In flight"),
-  completed: t("Completed"),
-  aborted: t("Aborted"),
-  failed: t("Failed"),
-};
-
 export const CREDENTIALS = { "link-token": t("Token of the HTTP link"), "mavlink-key": t("MAVLink signing key") };
 
 export const LINKS = {
