@@ -13,7 +13,7 @@ from missions.views.approvals import (
     MissionRevoke,
 )
 from missions.views.asset_inspections import AssetMissions, InspectedParts, InspectionsTile
-from missions.views.campaigns import CampaignDetail, CampaignList, CampaignPlan, CampaignRoutes
+from missions.views.campaigns import CampaignDaysFile, CampaignDetail, CampaignList, CampaignPlan, CampaignRoutes
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.coverage import MissionCoverage, MissionCoverageFile
 from missions.views.events import LiveEvents, MissionEvents
@@ -74,6 +74,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/history", views.MissionHistory.as_view(), name="api-mission-history"),
     path("campaigns", CampaignList.as_view(), name="api-campaigns"),
     path("campaigns/<uuid:campaign_id>", CampaignDetail.as_view(), name="api-campaign"),
+    path("campaigns/<uuid:campaign_id>/days.csv", CampaignDaysFile.as_view(), name="api-campaign-days-file"),
     path("campaigns/<uuid:campaign_id>/routes", CampaignRoutes.as_view(), name="api-campaign-routes"),
     path("campaigns/<uuid:campaign_id>/plan", CampaignPlan.as_view(), name="api-campaign-plan"),
     path("uavs", views.UavList.as_view(), name="api-uavs"),

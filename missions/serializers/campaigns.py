@@ -1,5 +1,6 @@
 """Campaigns in the shapes of the API."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from django.utils.translation import gettext as _
@@ -231,3 +232,37 @@ def campaign_routes_json(campaign: Campaign) -> dict[str, Any]:
             for number, _sequence, row in numbered
         ],
     }
+
+
+DAY_COLUMNS = (
+    "day", "crew", "mission", "name", "state", "site", "longitude", "latitude", "drive_km", "drive_min", "arrives_min", "leaves_min",
+    "targets", "flights", "flown_km", "work_min", "farthest_m",
+)  # fmt: skip
+
+
+def day_rows(campaign: Campaign) -> Iterator[list[Any]]:
+    """Yield a row for each stay at a site and each drive back, as DAY_COLUMNS; times are minutes after the crew left the start that day."""
+    schedule = campaign.schedule or {"sites": [], "missions": [], "days": []}
+    rows = {row["number"]: row for row in schedule["missions"]}
+    known = {str(key): (name, state) for key, name, state in campaign.missions.filter(deleted_at=None).values_list("pk", "name", "state")}
+    for day in schedule["days"]:
+        for visit in day["visits"]:
+            mission = rows[visit["mission"]]
+            site = schedule["sites"][mission["site"]]
+            yield [
+                day["day"], day["crew"], mission["number"], *known.get(mission["mission"], ("", "")),
+                site["name"] or _("Launch site %(number)s") % {"number": mission["site"] + 1}, *site["position"],
+                *_driven(visit["drive_m"], visit["drive_s"]), _minutes(visit["arrives_s"]), _minutes(visit["leaves_s"]),
+                mission["targets"], mission["flights"], round(mission["length_m"] / 1_000.0, 2), _minutes(mission["work_s"]),
+                mission["farthest_m"],
+            ]  # fmt: skip
+        back = [*_driven(day["back_m"], day["back_s"]), _minutes(day["ends_s"])]
+        yield [day["day"], day["crew"], None, "", "", _("Start"), *campaign.rules["start"], *back, *[None] * 6]
+
+
+def _driven(metres: float, seconds: float) -> list[float]:
+    return [round(metres / 1_000.0, 1), _minutes(seconds)]
+
+
+def _minutes(seconds: float) -> float:
+    return round(seconds / 60.0, 1)

@@ -5,15 +5,19 @@ from contextlib import contextmanager
 from typing import Any
 from uuid import UUID
 
-from django.http import Http404
+from django.http import Http404, StreamingHttpResponse
 from django.urls import reverse
+from django.utils.text import slugify
 from django.utils.translation import gettext as _
+from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from inspection.exporters.text_pieces import cell, csv_pieces
 from missions.models import Campaign
 from missions.serializers.campaigns import (
+    DAY_COLUMNS,
     CampaignInputSerializer,
     CampaignPageSerializer,
     CampaignPlanSerializer,
@@ -22,6 +26,7 @@ from missions.serializers.campaigns import (
     campaign_json,
     campaign_routes_json,
     campaign_summary,
+    day_rows,
 )
 from missions.serializers.inputs import plan_request
 from missions.services.campaigns import CampaignIsPlanned, MissionsInUse, create_campaign, delete_campaign, plan_campaign_again
@@ -32,6 +37,7 @@ from planning.campaigns.rules import rules_from_json
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import page_of
+from workspace.api.renderers import OneAnswer
 from workspace.api.schema import PAGE_PARAMETERS, request_example
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
@@ -135,6 +141,27 @@ class CampaignRoutes(APIView):
     @extend_schema(operation_id="get_campaign_routes", summary="Routes of a campaign as GeoJSON", responses=CampaignRoutesSerializer)
     def get(self, request: SignedInRequest, campaign_id: UUID) -> Response:
         return Response(campaign_routes_json(_campaign(request.user, campaign_id)))
+
+
+class CampaignDaysFile(APIView):
+    content_negotiation_class = OneAnswer
+    throttle_scope = "exports"
+
+    @extend_schema(
+        operation_id="export_campaign_days",
+        summary="Days of the crews as CSV",
+        description="A row for each stay at a site and each drive back. Times are minutes after the crew left the start that day.",
+        responses={(200, "text/csv"): OpenApiTypes.STR, 409: OpenApiResponse(description="The campaign is not planned: there is no file.")},
+    )
+    def get(self, request: SignedInRequest, campaign_id: UUID) -> StreamingHttpResponse:
+        campaign = _campaign(request.user, campaign_id)
+        if campaign.schedule is None:
+            raise ApiProblem(409, "not_planned", _("The campaign is not planned yet."))
+        pieces = csv_pieces(DAY_COLUMNS, (map(cell, row) for row in day_rows(campaign)))
+        response = StreamingHttpResponse(pieces, content_type="text/csv; charset=utf-8")
+        response["Content-Disposition"] = f'attachment; filename="{slugify(campaign.name) or "campaign"}-days.csv"'
+        response["Cache-Control"] = "private, no-cache"
+        return response
 
 
 class CampaignPlan(_PlansCampaigns):

@@ -298,6 +298,9 @@ async function removeCampaign(opener) {
 byId("campaign-menu").addEventListener("click", () =>
   toggleMenu(byId("campaign-menu"), () =>
     menuOf(t("This campaign"), [
+      ...(campaign?.schedule
+        ? [{ icon: "download", label: t("Days as CSV"), act: () => location.assign(`/api/v1${address}/days.csv`) }]
+        : []),
       ...(page.canPlan
         ? [{ icon: "trash-2", label: t("Delete"), act: () => void removeCampaign(byId("campaign-menu")) }]
         : []),

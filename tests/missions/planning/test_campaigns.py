@@ -1,5 +1,7 @@
 """Campaigns: missions from several launch sites, the crews' days, and what is stored of them."""
 
+import csv
+from io import StringIO
 from typing import Any
 from unittest import mock
 
@@ -100,6 +102,33 @@ def test_the_days_add_up(here, client):
         assert visit["leaves_s"] == pytest.approx(clock_s, abs=2.0)
         at = site
     assert day["ends_s"] == pytest.approx(clock_s + distance_m(at, START) * ROAD_FACTOR / 10.0, abs=3.0)
+
+
+def test_the_days_as_a_table(here, client):
+    answer = planned(client, body(here, name="=Line 7"))
+    file = client.get(f"/api/v1/campaigns/{answer['id']}/days.csv")
+    assert file["Content-Disposition"] == 'attachment; filename="line-7-days.csv"'
+    first, second, back = list(csv.DictReader(StringIO(b"".join(file.streaming_content).decode())))
+    visit = answer["schedule"]["days"][0]["visits"][0]
+    assert (first["day"], first["crew"], first["mission"], first["name"], first["state"]) == ("1", "1", "1", "'=Line 7 · 1", "planned")
+    assert first["site"] == "Launch site 1"
+    assert [float(first["longitude"]), float(first["latitude"])] == answer["schedule"]["sites"][0]["position"]
+    assert float(first["leaves_min"]) == round(visit["leaves_s"] / 60.0, 1)
+    assert (second["mission"], back["mission"], back["site"]) == ("2", "", "Start")
+    assert float(back["arrives_min"]) == round(answer["schedule"]["days"][0]["ends_s"] / 60.0, 1)
+    waiting = post(client, "campaigns", body(here)).json()["id"]
+    assert client.get(f"/api/v1/campaigns/{waiting}/days.csv").status_code == 409
+
+
+def test_routes_as_geojson(here, client):
+    answer = planned(client, body(here))
+    routes = client.get(f"/api/v1/campaigns/{answer['id']}/routes").json()
+    assert [feature["properties"] for feature in routes["features"]] == [
+        {"number": row["number"], "day": 1, "uav": "Tern"} for row in answer["schedule"]["missions"]
+    ]
+    for feature, row in zip(routes["features"], answer["schedule"]["missions"], strict=True):
+        stored = Mission.objects.get(pk=row["mission"]).routes.get().geometry.coords
+        assert feature["geometry"]["coordinates"] == [list(point[:2]) for point in stored]
 
 
 def test_work_that_does_not_fit_a_day_is_split(here, client):
