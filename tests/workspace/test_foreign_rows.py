@@ -20,6 +20,7 @@ from drf_spectacular.generators import SchemaGenerator
 from accounts.services import make_service_account
 from missions.models import (
     Base,
+    Campaign,
     CommandKind,
     CredentialKind,
     Mission,
@@ -30,6 +31,8 @@ from missions.models import (
     UavCredential,
     UavType,
 )
+from planning.campaigns.crew_days import Crews
+from planning.campaigns.rules import CampaignRules, rules_to_json
 from results.models import Evidence, Finding, MediaUpload, Medium
 from results.services.findings import create_finding
 from simulation.models import Rehearsal
@@ -53,6 +56,7 @@ SHARED = {
 PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte", "ending", "edge"}
 APPS = ("mfa", "workspace", "missions", "telemetry", "results", "simulation")
 REFUSED = {403, 404, 409}  # 409: it was not deleted, so that nothing is brought back
+RULES = rules_to_json(CampaignRules(Crews(UAV_AT)))
 OWN_DOINGS = {"workspace.signinentry", "workspace.idempotencykey", "workspace.browsersession"}  # of the stranger
 
 
@@ -75,6 +79,7 @@ def rows_of(home: Organisation) -> dict[str, Model]:
         "command_id": give(uav, CommandKind.HOLD, keeper),
         "credential_id": UavCredential.objects.create(uav=uav, kind=CredentialKind.LINK_TOKEN, token_sha256=f"{home.pk:064}"),
         "log_id": FlightLog.objects.create(organisation=home, uav=uav, path="tern.tlog", started_at=timezone.now()),
+        "campaign_id": Campaign.objects.create(organisation=home, name="North", request={"targets": []}, rules=RULES, target_count=0),
         "selection_id": SavedSelection.objects.create(organisation=home, name="South", targets=[]),
         "alert_id": Alert.objects.create(organisation=home, uav=uav, level=AlertLevel.WARNING, code="link-late", opened_at=timezone.now()),
         "offer_id": ReplanOffer.objects.create(mission=mission, code="asked-for", state=OfferState.OPEN),

@@ -54,6 +54,7 @@ def test_targets_become_a_campaign_whose_days_are_planned_again_and_deleted(visi
     expect(page.get_by_role("heading", name="Campaigns")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_a_viewer_sees_the_days_and_changes_nothing(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     page.goto(stores_mission(page, "Seen by a viewer"))
