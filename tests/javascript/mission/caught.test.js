@@ -1,7 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { targetOf, targetOfRow } from "../../../static/js/mission/selection.js";
-import { caughtWords, groupsOf, notPickedYet, rowsWithout } from "../../../static/js/mission/targets/caught.js";
+import {
+  areLines,
+  caughtWords,
+  groupsOf,
+  linesOf,
+  notPickedYet,
+  rowsWithout,
+} from "../../../static/js/mission/targets/caught.js";
 
 const tower = (id, line, voltage_v = 138_000) => ({
   id,
@@ -44,6 +51,24 @@ test("it is chosen by kind, line and voltage, where there are several", () => {
   assert.deepEqual(ids([]), [1, 2, 3, 9]);
   assert.deepEqual(ids(["line 100"]), [3, 9]);
   assert.deepEqual(ids(["kind bridge", "voltage 66000"]), [1, 2]);
+});
+
+test("of an area with more towers than can be named its lines are chosen by voltage", () => {
+  const line = (id, voltage_v) => ({ ...tower(id, null, voltage_v), kind: "line", label: `L${id}` });
+  const lines = [line(100, 138_000), line(200, 66_000), line(300, 66_000)];
+  assert.ok(areLines(lines));
+  assert.ok(!areLines(rows) && !areLines([]));
+  assert.equal(caughtWords(lines), "3 lines");
+  assert.deepEqual(
+    groupsOf(lines).map(([name, groups]) => [name, groups.map(({ count }) => count)]),
+    [["voltage", [2, 1]]],
+  );
+  assert.deepEqual(linesOf(rowsWithout(lines, new Set(["voltage 66000"]))), [100]);
+  const whole = targetOf({ id: 100, kind: "line", properties: { label: "L100" }, centre: [9, 50] });
+  assert.deepEqual(
+    notPickedYet(lines, [whole]).rows.map(({ id }) => id),
+    [200, 300],
+  );
 });
 
 test("what is picked already, and towers of lines that are picked whole, are left out", () => {

@@ -30,12 +30,25 @@ export function createNetworkPicking(context, adds) {
 
 /** @param {MissionContext} context @param {AddMany} addMany */
 function createAreaPicking({ store, problem, failed, selection }, addMany) {
+  /**
+   * What stands inside a ring; the lines that meet it where more stands there than the server names.
+   *
+   * @param {number[][]} ring
+   */
+  async function foundWithin(ring) {
+    const polygon = { type: "Polygon", coordinates: [ring] };
+    const { data } = /** @type {Answer<WithinOutput>} */ (await post("/assets/within", { polygon }));
+    if (data.count === data.assets.length) return data;
+    const { data: lines } = /** @type {Answer<WithinOutput>} */ (
+      await post("/assets/within", { polygon, kinds: ["line"] })
+    );
+    return lines.count > 0 && lines.count === lines.assets.length ? lines : data;
+  }
+
   /** Find the assets inside a ring; they are added once they were looked at. @param {number[][]} ring @param {{ from?: string }} [how] */
   async function catchArea(ring, { from = t("the area") } = {}) {
     try {
-      const { data } = /** @type {Answer<WithinOutput>} */ (
-        await post("/assets/within", { polygon: { type: "Polygon", coordinates: [ring] } })
-      );
+      const data = await foundWithin(ring);
       const { rows, covered } = notPickedYet(data.assets, selection().targets);
       if (data.count > data.assets.length) {
         problem(

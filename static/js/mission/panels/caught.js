@@ -4,7 +4,7 @@ import { h } from "../../dom.js";
 import { t, tn } from "../../text.js";
 import { numberText } from "../../units.js";
 import { MAX_TARGETS } from "../selection.js";
-import { caughtWords, groupsOf, linesOf, rowsWithout } from "../targets/caught.js";
+import { areLines, caughtWords, groupsOf, linesOf, rowsWithout } from "../targets/caught.js";
 
 /** @import { Group, GroupName } from "../targets/caught.js" */
 /** @import { Caught, MissionActions, MissionStore } from "../types.d.ts" */
@@ -79,12 +79,15 @@ export function mountCaught(frame, store, actions) {
     title.textContent = caughtWords(caught.rows);
     add.textContent = tn(count, "Add {count} target", "Add {count} targets");
     add.disabled = count === 0 || count > room;
+    add.hidden = areLines(caught.rows); // in parts inside the area alone
+    along.classList.toggle("primary", add.hidden);
     const lines = linesOf(caught.chosen).length;
     along.hidden = lines === 0;
     along.disabled = lines > room;
     along.textContent = tn(lines, "Fly along its line", "Fly along their {count} lines");
-    why.textContent = count > room ? t("A mission takes {most} targets.", { most: numberText(MAX_TARGETS) }) : "";
-    if (isNew) (add.disabled ? cancel : add).focus({ preventScroll: true });
+    why.textContent =
+      !add.hidden && count > room ? t("A mission takes {most} targets.", { most: numberText(MAX_TARGETS) }) : "";
+    if (isNew) (add.hidden ? along : add.disabled ? cancel : add).focus({ preventScroll: true });
   });
 }
 

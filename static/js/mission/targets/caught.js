@@ -46,6 +46,7 @@ export function notPickedYet(rows, targets) {
   const lines = new Set(
     targets.filter(({ kind, position, stretch }) => kind === "line" && !position && !stretch).map(({ asset }) => asset),
   );
+  if (areLines(rows)) return { rows: rows.filter(({ id }) => !lines.has(id)), covered: 0 };
   const fresh = rows.filter(({ id }) => !keys.has(keyOf({ asset: id, position: null, stretch: null })));
   const boxes = partBoxes(targets);
   const kept = fresh.filter(
@@ -103,10 +104,15 @@ function groupsBy(name, rows) {
 /** Rows in none of the groups that are off. @param {PickedAsset[]} rows @param {Set<string>} off */
 export const rowsWithout = (rows, off) => rows.filter((row) => NAMES.every((name) => !off.has(IN[name](row))));
 
-/** The lines that the towers carry. @param {PickedAsset[]} rows */
+/** The lines that the towers carry, and those among the rows. @param {PickedAsset[]} rows */
 export const linesOf = (rows) => [
-  ...new Set(rows.flatMap(({ kind, line }) => (kind === "tower" && line !== null ? [line] : []))),
+  ...new Set(
+    rows.flatMap(({ id, kind, line }) => (kind === "line" ? [id] : kind === "tower" && line !== null ? [line] : [])),
+  ),
 ];
+
+/** Whether lines alone were found: an area with more towers than can be named. @param {PickedAsset[]} rows */
+export const areLines = (rows) => rows.length > 0 && rows.every(({ kind }) => kind === "line");
 
 /** "142 towers on 5 lines, 16 bridges". @param {PickedAsset[]} rows */
 export function caughtWords(rows) {
