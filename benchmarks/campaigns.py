@@ -72,10 +72,10 @@ def fewest_sites(courses: list[tuple[LonLat, ...]], candidates: list[LonLat], re
 
 
 def fewest_days(planned: PlannedCampaign, crews: Crews) -> int:
-    """Return a bound: all work and set-up, and for each crew and day one drive to the nearest site and back."""
+    """Return a bound: all work, a set-up at each site, and for each crew and day one drive to the nearest site and back."""
     if not planned.missions:
         return 0
-    work_s = sum(mission.work_s + crews.set_up_s for mission in planned.missions)
+    work_s = sum(mission.work_s for mission in planned.missions) + crews.set_up_s * len(planned.sites)
     sites = np.array([site.position for site in planned.sites])
     nearest_s = float(distance_m(np.broadcast_to(np.array(crews.start), sites.shape), sites).min()) * ROAD_FACTOR / crews.drive_mps
     return math.ceil(work_s / (crews.day_s - 2.0 * nearest_s) / crews.count)

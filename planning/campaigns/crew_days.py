@@ -28,7 +28,7 @@ class Crews:
     start: LonLat
     count: int = 1
     drive_mps: float = 40.0 / 3.6
-    set_up_s: float = 900.0  # at each site: from arrival to take-off, and from landing to departure, together
+    set_up_s: float = 900.0  # at each site: from arrival to take-off, and from landing to departure, together; once a stay
     day_s: float = 8.0 * 3600.0  # from leaving the start to being back
 
 
@@ -80,10 +80,10 @@ def schedule(sites: Sequence[LonLat], work_s: Sequence[float], crews: Crews, *, 
     if not fitting:
         return Schedule((), too_long, True)
     road_m = _road_m([crews.start, *(sites[site] for site in fitting)])
-    stay_s = [work_s[site] + crews.set_up_s for site in fitting]
-    needed = math.ceil(sum(stay_s) / crews.day_s / crews.count)
-    days = min(len(fitting), needed + 1)
-    while (solution := _solve(road_m / crews.drive_mps, stay_s, crews, days, stop, search_s)).unassigned and days < len(fitting):
+    own_s = [work_s[site] for site in fitting]
+    set_up_s = crews.set_up_s * len({sites[site] for site in fitting})
+    days = min(len(fitting), math.ceil((sum(own_s) + set_up_s) / crews.day_s / crews.count) + 1)
+    while (solution := _solve(_before_work_s(road_m, crews), own_s, crews, days, stop, search_s)).unassigned and days < len(fitting):
         days = min(len(fitting), 2 * days)
     routes = sorted((route for of_crew in solution.sorties for route in of_crew if route), key=lambda route: fitting[route[0]])
     # The days are alike for all crews, so they are dealt out: everything is done soonest.
@@ -95,16 +95,27 @@ def schedule(sites: Sequence[LonLat], work_s: Sequence[float], crews: Crews, *, 
     return Schedule(made, tuple(sorted((*too_long, *left))), solution.is_proven)
 
 
-def _solve(drive_s: FloatArray, stay_s: Sequence[float], crews: Crews, days: int, stop: Stop, search_s: float) -> Solution:
+def _before_work_s(road_m: FloatArray, crews: Crews) -> FloatArray:
+    """Return the seconds from leaving each place to the first take-off at another one: the drive and the set-up, (n, n).
+
+    Missions that follow each other at one site need one set-up. The first place is the start; to it there is the drive alone.
+    """
+    before_s = road_m / crews.drive_mps + crews.set_up_s
+    before_s[1:, 1:][road_m[1:, 1:] == 0.0] = 0.0
+    before_s[:, 0] -= crews.set_up_s
+    return before_s
+
+
+def _solve(before_s: FloatArray, work_s: Sequence[float], crews: Crews, days: int, stop: Stop, search_s: float) -> Solution:
     """Return the sites of each crew by day. A day costs as much as it can hold, so that the fewest days come first."""
     return solve(
         Problem(
             uavs=tuple(UavStart(2.0 * crews.day_s, End.RETURN, sorties=days) for _ in range(crews.count)),
-            visits=tuple(Visit(place, length_m=length_s) for place, length_s in enumerate(stay_s)),
-            target_count=len(stay_s),
-            from_start_m=np.repeat(drive_s[:1, 1:] + crews.day_s, crews.count, axis=0),
-            between_m=drive_s[1:, 1:],
-            to_start_m=np.repeat(drive_s[1:, :1], crews.count, axis=1),
+            visits=tuple(Visit(place, length_m=length_s) for place, length_s in enumerate(work_s)),
+            target_count=len(work_s),
+            from_start_m=np.repeat(before_s[:1, 1:] + crews.day_s, crews.count, axis=0),
+            between_m=before_s[1:, 1:],
+            to_start_m=np.repeat(before_s[1:, :1], crews.count, axis=1),
             objective=Objective.TOTAL,
         ),
         stop=stop,
@@ -122,12 +133,13 @@ def _road_m(places: Sequence[LonLat]) -> FloatArray:
 def _crew_day(crew: int, day: int, route: Sequence[tuple[int, int]], work_s: Sequence[float], crews: Crews, road_m: FloatArray) -> CrewDay:
     """route: places in road_m less one, and numbers of the sites."""
     visits, at_s = [], 0.0
+    before_s = _before_work_s(road_m, crews)
     stops = [0, *(place + 1 for place, _ in route)]
     for (left, right), (_, site) in zip(pairwise(stops), route, strict=True):
         drive_m = float(road_m[left, right])
         drive_s = drive_m / crews.drive_mps
         arrives_s = at_s + drive_s
-        at_s = arrives_s + crews.set_up_s + work_s[site]
+        at_s += float(before_s[left, right]) + work_s[site]
         visits.append(SiteVisit(site, drive_m, drive_s, arrives_s, at_s))
     back_m = float(road_m[stops[-1], 0])
     return CrewDay(crew, day, tuple(visits), back_m, back_m / crews.drive_mps)

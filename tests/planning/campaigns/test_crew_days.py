@@ -32,7 +32,7 @@ def is_sound(made: Schedule, sites: list[LonLat], work_s: list[float], crews: Cr
             assert visit.drive_s == pytest.approx(there_s, rel=1e-6)
             assert visit.drive_m == pytest.approx(there_s * crews.drive_mps, rel=1e-6)
             assert visit.arrives_s == pytest.approx(clock_s + there_s, rel=1e-6)
-            clock_s = clock_s + there_s + crews.set_up_s + work_s[visit.site]
+            clock_s += there_s + (0.0 if at == sites[visit.site] and at != crews.start else crews.set_up_s) + work_s[visit.site]
             assert visit.leaves_s == pytest.approx(clock_s, rel=1e-6)
             at = sites[visit.site]
         assert day.ends_s == pytest.approx(clock_s + drive_s(at, crews.start, crews), rel=1e-6)
@@ -61,6 +61,16 @@ def test_a_site_with_more_work_than_a_day_holds_is_named():
     is_sound(made, sites, [1_000.0, work_limit_s(sites[1], CREW) + 1.0])
     assert made.too_long == (1,)
     assert schedule(sites[1:], [work_limit_s(sites[1], CREW) - 1.0], CREW).too_long == ()
+
+
+def test_missions_that_follow_each_other_at_one_site_need_one_set_up():
+    sites = [LonLat(10.05, 56.0), LonLat(10.1, 56.0), LonLat(10.05, 56.0)]
+    made = schedule(sites, [1_000.0] * 3, CREW)
+    is_sound(made, sites, [1_000.0] * 3)
+    (day,) = made.days
+    assert abs([visit.site for visit in day.visits].index(0) - [visit.site for visit in day.visits].index(2)) == 1
+    alone_s = sum(drive_s(left, right) for left, right in pairwise([START, sites[0], sites[1], START]))
+    assert day.ends_s == pytest.approx(alone_s + 2 * CREW.set_up_s + 3_000.0, rel=1e-6)
 
 
 def test_nothing_to_do_is_no_day():

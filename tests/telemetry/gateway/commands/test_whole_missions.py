@@ -12,6 +12,7 @@ from missions.services.commands.dispatch import load_of
 from planning.task import Task, TaskKind
 from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import a_user, client_of
+from tests.cases import long
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended, flyer, holds
@@ -33,7 +34,7 @@ def mission(uav, settings, tmp_path) -> Mission:
     return approved(a_user(), [uav], [TargetRequest(towers[0].pk, task=Task(TaskKind.LOOK, 5.0)), towers[1]])[0]
 
 
-@pytest.mark.parametrize("item_after_landing", [0, 1])
+@pytest.mark.parametrize("item_after_landing", [0, *long(1)])
 def test_a_mission_with_a_fence_and_a_look_is_flown_to_its_end_by_an_arducopter(item_after_landing, uav, mission, tmp_path):
     vehicle = ArduPilot(item_after_landing=item_after_landing)
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
