@@ -2,6 +2,7 @@
 
 import { get } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";
+import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
 
@@ -45,7 +46,11 @@ export async function showCampaigns(limit = SHOWN) {
     data.next !== null &&
       h(
         "button",
-        { type: "button", class: "text-button", onclick: () => void showCampaigns(limit * 4) },
+        {
+          type: "button",
+          class: "text-button",
+          onclick: () => void showCampaigns(limit * 4).catch(({ message }) => toast(message)),
+        },
         t("More campaigns"),
       ),
   );
