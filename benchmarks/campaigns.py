@@ -83,7 +83,7 @@ def fewest_days(planned: PlannedCampaign, crews: Crews) -> int:
 
 def faults_of(planned: PlannedCampaign, targets: int, crews: Crews) -> list[str]:
     flown = [target for mission in planned.missions for target in mission.flown]
-    lost = set(range(targets)) - set(flown) - {one.target for one in planned.left_out}
+    lost = set(range(targets)) - set(flown) - {one.target for one in planned.unassigned}
     return [
         *(["a part is in two missions"] if len(flown) != len(set(flown)) else []),
         *([f"parts are lost: {sorted(lost)}"] if lost else []),
@@ -128,7 +128,7 @@ def main() -> int:
                 str(sum(mission.flights for mission in planned.missions)),
                 f"{sum(mission.plan['total_length_m'] for mission in planned.missions) / 1_000.0:.0f}",
                 f"{max((day.day + 1 for day in planned.schedule.days), default=0)} ({fewest_days(planned, crews)})", f"{driven_km:.0f}",
-                str(len(planned.left_out)), f"{took_s:.1f}",
+                str(len(planned.unassigned)), f"{took_s:.1f}",
             ])  # fmt: skip
             print(*rows[-1], sep="  ", flush=True)
     length_km = sum(float(distance_m(np.array(course[:-1]), np.array(course[1:])).sum()) for course in courses if len(course) > 1) / 1_000.0

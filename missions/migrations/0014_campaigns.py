@@ -23,7 +23,7 @@ class Migration(migrations.Migration):
                 ('name', models.CharField(max_length=150)),
                 ('request', models.JSONField(help_text='targets, UAVs and options; see planning/request.py')),
                 ('rules', models.JSONField(help_text='crews, launch sites and reach; see planning/campaigns/rules.py')),
-                ('schedule', models.JSONField(blank=True, help_text='sites, days and what is left out; empty until it is planned', null=True)),
+                ('schedule', models.JSONField(blank=True, help_text='sites, days and unassigned targets; empty until it is planned', null=True)),
                 ('target_count', models.PositiveIntegerField()),
                 ('mission_count', models.PositiveIntegerField(default=0)),
                 ('day_count', models.PositiveIntegerField(default=0)),

@@ -20,7 +20,7 @@ class Campaign(models.Model):
     name = models.CharField(max_length=MAX_NAME_LENGTH)
     request = models.JSONField(help_text="targets, UAVs and options; see planning/request.py")
     rules = models.JSONField(help_text="crews, launch sites and reach; see planning/campaigns/rules.py")
-    schedule = models.JSONField(null=True, blank=True, help_text="sites, days and what is left out; empty until it is planned")
+    schedule = models.JSONField(null=True, blank=True, help_text="sites, days and unassigned targets; empty until it is planned")
     target_count = models.PositiveIntegerField()
     mission_count = models.PositiveIntegerField(default=0)
     day_count = models.PositiveIntegerField(default=0)

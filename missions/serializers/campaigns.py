@@ -127,7 +127,7 @@ class CampaignDaySerializer(serializers.Serializer):
     ends_s = serializers.FloatField(help_text="when the crew is back")
 
 
-class LeftOutSerializer(serializers.Serializer):
+class CampaignUnassignedSerializer(serializers.Serializer):
     target = serializers.IntegerField(help_text="its place in the campaign's targets")
     reason = serializers.CharField(help_text=f"as in plans, or {BEYOND_REACH}: no launch site is near enough")
     message = serializers.CharField()
@@ -140,7 +140,7 @@ class CampaignScheduleSerializer(serializers.Serializer):
     missions = CampaignMissionSerializer(many=True)
     days = CampaignDaySerializer(many=True)
     is_proven = serializers.BooleanField(help_text="no schedule of these missions has fewer days, or as many with less driving")
-    left_out = LeftOutSerializer(many=True, help_text="targets that no mission visits")
+    unassigned = CampaignUnassignedSerializer(many=True, help_text="targets that no mission visits")
 
 
 class CampaignSummarySerializer(serializers.Serializer):
@@ -208,7 +208,7 @@ def _schedule(campaign: Campaign, schedule: dict[str, Any]) -> dict[str, Any]:
     states = {str(key): state for key, state in campaign.missions.filter(deleted_at=None).values_list("pk", "state")}
     return schedule | {
         "missions": [mission | {"state": states.get(mission["mission"])} for mission in schedule["missions"]],
-        "left_out": [with_message(item) for item in schedule["left_out"]],
+        "unassigned": [with_message(item) for item in schedule["unassigned"]],
     }
 
 

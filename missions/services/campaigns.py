@@ -204,8 +204,7 @@ def _unlinked(uav: UavRequest) -> UavRequest:
 
 def _order(planned: PlannedCampaign) -> list[int]:
     """Return the missions in the order in which they are flown; those that are too long for any day come last."""
-    days = sorted(planned.schedule.days, key=lambda day: (day.day, day.crew))
-    return [*(visit.site for day in days for visit in day.visits), *planned.schedule.too_long]
+    return [*(visit.site for day in planned.schedule.days for visit in day.visits), *planned.schedule.too_long]
 
 
 def _stored(campaign: Campaign, author: User | None, number: int, mission: SiteMission, *, is_first_crew: bool) -> Mission:
@@ -220,7 +219,7 @@ def _stored(campaign: Campaign, author: User | None, number: int, mission: SiteM
 
 
 def _schedule_json(planned: PlannedCampaign, order: list[int], stored: list[Mission]) -> dict[str, Any]:
-    """Return sites, missions in this order, days and what is left out; see serializers/campaigns.py."""
+    """Return sites, missions in this order, days and unassigned targets; see serializers/campaigns.py."""
     number_of = {place: number for number, place in enumerate(order, start=1)}
     used = list(dict.fromkeys(planned.missions[place].site for place in order))  # in the order in which they are visited
     sites = [planned.sites[site] for site in used]
@@ -249,10 +248,12 @@ def _schedule_json(planned: PlannedCampaign, order: list[int], stored: list[Miss
                 "back_s": round(day.back_s),
                 "ends_s": round(day.ends_s),
             }
-            for day in sorted(planned.schedule.days, key=lambda day: (day.day, day.crew))
+            for day in planned.schedule.days
         ],
         "is_proven": planned.schedule.is_proven,
-        "left_out": [{"target": one.target, "reason": one.reason, "why": list(one.why)} for one in planned.left_out],
+        "unassigned": [
+            {"target": one.target, "reason": one.reason, "why": [reason.to_json() for reason in one.why]} for one in planned.unassigned
+        ],
     }
 
 

@@ -45,7 +45,7 @@ from workspace.jobs.services import TooManyJobs
 from workspace.models import User
 from workspace.reason_texts import reason_text
 
-PLANNED_BY_JOB = "A job plans it, see `job` of the campaign; its missions, days and what is left out are there once it is done."
+PLANNED_BY_JOB = "A job plans it, see `job` of the campaign; its missions, days and unassigned targets are there once it is done."
 EXAMPLE = {"name": "Valley lines", **PLAN_EXAMPLE, "rules": {"start": [9.52, 47.14], "crews": 1, "reach_m": 3000}}
 
 

@@ -9,12 +9,13 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import distance_m
-from operation.reasons import Reason
+from operation.reasons import Reason, reason_from_json
 from planning.airspace import Airspace, zone_at
 from planning.campaigns.crew_days import Schedule, schedule, work_limit_s
 from planning.campaigns.launch_sites import choose_sites, places_beside
 from planning.campaigns.rules import CampaignRules, LaunchSite
 from planning.clearance.lost_link import LostLink
+from planning.plan import UnassignedTarget
 from planning.request import EndAction, LostLinkRequest, PlanRequest
 from planning.solver.solver import Stop
 from planning.trajectory.waypoints import WaypointKind
@@ -77,23 +78,17 @@ class SiteMission:
 
 
 @dataclass(frozen=True)
-class UnvisitedTarget:
-    """A target that no mission visits, by its place in the request. reason: as in plans, or one of this module; why: Reasons as JSON."""
-
-    target: int
-    reason: str
-    why: Sequence[dict[str, Any]]
-
-
-@dataclass(frozen=True)
 class PlannedCampaign:
-    """sites: proposed ones have no name. Schedule.days and Schedule.too_long number the missions. blocked: given sites inside zones."""
+    """sites: proposed ones have no name. Schedule.days and Schedule.too_long number the missions. blocked: given sites inside zones.
+
+    UnassignedTarget.reason is one of plans, or BEYOND_REACH or BEYOND_DAY; its target is the place in the campaign's request.
+    """
 
     sites: tuple[LaunchSite, ...]
     blocked: tuple[LaunchSite, ...]
     missions: tuple[SiteMission, ...]
     schedule: Schedule
-    left_out: tuple[UnvisitedTarget, ...]
+    unassigned: tuple[UnassignedTarget, ...]
 
 
 def at_any_site(request: PlanRequest, rules: CampaignRules) -> PlanRequest:
@@ -136,14 +131,14 @@ def plan_campaign(
     )
     if stop():
         raise Stopped
-    left_out = tuple(sorted(work.left_out.values(), key=lambda one: one.target))
+    unassigned = tuple(sorted(work.unassigned.values(), key=lambda one: one.target))
     blocked = tuple(site for site in rules.sites if site not in given)
-    return PlannedCampaign(tuple(work.sites), blocked, tuple(work.missions), days, left_out)
+    return PlannedCampaign(tuple(work.sites), blocked, tuple(work.missions), days, unassigned)
 
 
 @dataclass
 class _Work:
-    """What is planned so far. left_out: of each target that no mission visits yet, why."""
+    """What is planned so far. unassigned: of each target that no mission visits yet, why."""
 
     courses: Sequence[Sequence[LonLat]]
     request: PlanRequest
@@ -152,11 +147,11 @@ class _Work:
     stop: Stop
     sites: list[LaunchSite] = field(default_factory=list)
     missions: list[SiteMission] = field(default_factory=list)
-    left_out: dict[int, UnvisitedTarget] = field(default_factory=dict)
+    unassigned: dict[int, UnassignedTarget] = field(default_factory=dict)
 
     def leave_out(self, targets: Sequence[int] | Iterator[int], reason: str, why: Reason) -> None:
         for target in targets:
-            self.left_out[target] = UnvisitedTarget(target, reason, [why.to_json()])
+            self.unassigned[target] = UnassignedTarget(target, reason, (why,))
 
     def fly_from(self, places: Sequence[LaunchSite], given: Sequence[LaunchSite], targets: Sequence[int]) -> list[int]:
         """Choose sites for these targets and plan their missions. Returns the targets that might be flown from another site."""
@@ -174,14 +169,14 @@ class _Work:
         if self.stop():
             raise Stopped
         for target, place, nearest_m in zip(targets, choice.site_of, choice.nearest_m, strict=True):
-            if place is None and target not in self.left_out:
+            if place is None and target not in self.unassigned:
                 self._leave_out_without_site(target, nearest_m, has_far_sites=len(nearby) < len(places))
         failed = []
         for number, place in enumerate(choice.sites):
             self.sites.append(nearby[place])
             own = [target for target, of_target in zip(targets, choice.site_of, strict=True) if of_target == number]
             for target, item in self._fly(len(self.sites) - 1, own).items():
-                self.left_out[target] = UnvisitedTarget(target, item["reason"], item["why"])
+                self.unassigned[target] = UnassignedTarget(target, item["reason"], tuple(map(reason_from_json, item["why"])))
                 if item["reason"] not in NEVER_REACHED:
                     failed.append(target)
         return sorted(failed)
@@ -215,7 +210,7 @@ class _Work:
             return self._fly(site, sorted(flown[:half])) | self._fly(site, sorted(flown[half:]))
         self.missions.append(found)
         for target in flown:
-            self.left_out.pop(target, None)
+            self.unassigned.pop(target, None)
         if len(self.missions) > MAX_MISSIONS:
             raise TooManyMissions
         return left

@@ -60,7 +60,10 @@ class CrewDay:
 
 @dataclass(frozen=True)
 class Schedule:
-    """too_long: sites with more work than a crew can do in a day, by number. is_proven: no schedule has fewer days or less driving."""
+    """days: by day, then by crew. too_long: sites with more work than a crew can do in a day, by number.
+
+    is_proven: no schedule has fewer days or less driving.
+    """
 
     days: tuple[CrewDay, ...]
     too_long: tuple[int, ...]

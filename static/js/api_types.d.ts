@@ -1222,7 +1222,7 @@ export interface components {
             /** @description no schedule of these missions has fewer days, or as many with less driving */
             is_proven: boolean;
             /** @description targets that no mission visits */
-            left_out: components["schemas"]["LeftOut"][];
+            unassigned: components["schemas"]["CampaignUnassigned"][];
         };
         CampaignSummary: {
             /** Format: uuid */
@@ -1244,6 +1244,14 @@ export interface components {
             planned_at: string | null;
             /** Format: date-time */
             updated_at: string;
+        };
+        CampaignUnassigned: {
+            /** @description its place in the campaign's targets */
+            target: number;
+            /** @description as in plans, or beyond_reach: no launch site is near enough */
+            reason: string;
+            message: string;
+            why: components["schemas"]["Why"][];
         };
         /** @description A crew's stay at a site. Times are seconds after it left the start that day. */
         CampaignVisit: {
@@ -3427,14 +3435,6 @@ export interface components {
              * @default false
              */
             is_required: boolean;
-        };
-        LeftOut: {
-            /** @description its place in the campaign's targets */
-            target: number;
-            /** @description as in plans, or beyond_reach: no launch site is near enough */
-            reason: string;
-            message: string;
-            why: components["schemas"]["Why"][];
         };
         LegCheck: {
             is_clear: boolean;
@@ -9882,6 +9882,7 @@ export type CampaignRules = components['schemas']['CampaignRules'];
 export type CampaignRulesRequest = components['schemas']['CampaignRulesRequest'];
 export type CampaignSchedule = components['schemas']['CampaignSchedule'];
 export type CampaignSummary = components['schemas']['CampaignSummary'];
+export type CampaignUnassigned = components['schemas']['CampaignUnassigned'];
 export type CampaignVisit = components['schemas']['CampaignVisit'];
 export type Candidate = components['schemas']['Candidate'];
 export type CaptureCollection = components['schemas']['CaptureCollection'];
@@ -10044,7 +10045,6 @@ export type LastTarget = components['schemas']['LastTarget'];
 export type LaterDeparture = components['schemas']['LaterDeparture'];
 export type LaunchSite = components['schemas']['LaunchSite'];
 export type LaunchSiteRequest = components['schemas']['LaunchSiteRequest'];
-export type LeftOut = components['schemas']['LeftOut'];
 export type LegCheck = components['schemas']['LegCheck'];
 export type LegChecks = components['schemas']['LegChecks'];
 export type LegChecksInputRequest = components['schemas']['LegChecksInputRequest'];

@@ -12,7 +12,7 @@ import { t, tn } from "../text.js";
 import { percentText } from "../units.js";
 import * as layer from "./campaign_layer.js";
 import { openedOrTold } from "./rules_form.js";
-import { dayCards, factsOf, leftOutCard, tooLongCard, unusedSitesCard } from "./schedule_view.js";
+import { dayCards, factsOf, tooLongCard, unassignedCard, unusedSitesCard } from "./schedule_view.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Campaign, CampaignRoutes, CampaignRulesRequest, CampaignSchedule, Job } from "../api_types.d.ts" */
@@ -196,7 +196,7 @@ function draw() {
     byId("campaign-days"),
     problemNotice(),
     unusedSitesCard(campaign),
-    leftOutCard(campaign),
+    unassignedCard(campaign),
     isEmpty &&
       h(
         "div",

@@ -206,8 +206,8 @@ export function unusedSitesCard({ schedule, rules }) {
 }
 
 /** Targets that no mission visits, by cause. @param {Campaign} campaign */
-export function leftOutCard({ schedule, target_count }) {
-  const items = schedule?.left_out ?? [];
+export function unassignedCard({ schedule, target_count }) {
+  const items = schedule?.unassigned ?? [];
   if (items.length === 0) return null;
   /** @type {Map<string, number>} */
   const causes = new Map();

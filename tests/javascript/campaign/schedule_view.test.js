@@ -18,7 +18,7 @@ const schedule = {
     { day: 2, crew: 1, visits: [], back_m: 0, back_s: 0, ends_s: 0 },
   ],
   is_proven: true,
-  left_out: [],
+  unassigned: [],
 };
 
 test("a day begins at 8, and its clock goes on over midnight", () => {

@@ -66,7 +66,7 @@ def distance_m(first: Any, second: Any) -> float:
 def test_every_tower_is_visited_by_a_mission_from_a_site_within_reach(here, client):
     answer = planned(client, body(here))
     schedule = answer["schedule"]
-    assert schedule["left_out"] == []
+    assert schedule["unassigned"] == []
     assert len(schedule["sites"]) == 2
     visited = []
     for row in schedule["missions"]:
@@ -145,14 +145,14 @@ def test_work_that_does_not_fit_a_day_is_split(here, client):
 def test_targets_whose_drive_takes_the_day_are_named(here, client):
     schedule = planned(client, body(here, day_h=1.0, set_up_min=59.0, reach_m=5_000.0, drive_kmh=60.0))["schedule"]
     assert (schedule["days"], schedule["missions"]) == ([], [])
-    assert {item["reason"] for item in schedule["left_out"]} == {"beyond_working_day"}
+    assert {item["reason"] for item in schedule["unassigned"]} == {"beyond_working_day"}
 
 
 def test_a_later_mission_flies_what_the_batteries_of_one_do_not_hold(here, client):
     asked = body(here, flights=1, reach_m=5_000.0)
     asked["uavs"] = [{"name": "Tern", "position": [10.0, 56.0], "max_range_m": 2_000.0}]
     schedule = planned(client, asked)["schedule"]
-    assert schedule["left_out"] == []
+    assert schedule["unassigned"] == []
     assert len(schedule["missions"]) > 1
     lengths_m = [Mission.objects.get(pk=row["mission"]).routes.get().length_m for row in schedule["missions"]]
     assert max(lengths_m) <= 2_000.0
@@ -165,11 +165,11 @@ def test_targets_that_no_mission_visits_are_named_with_the_reason(here, client):
     far = {"position": [10.2, 56.0]}
     asked = body(here, far, proposes_sites=False, sites=[{"name": "Yard", "position": [10.005, 55.998]}], reach_m=1_500.0)
     schedule = planned(client, asked)["schedule"]
-    left_out = {item["target"]: item for item in schedule["left_out"]}
-    assert left_out[6]["reason"] == "beyond_reach"
-    assert "UAVs would have to fly up to" in left_out[6]["message"]
-    assert left_out[2]["reason"] == "inside_zone"
-    assert "Airport" in left_out[2]["message"]
+    unassigned = {item["target"]: item for item in schedule["unassigned"]}
+    assert unassigned[6]["reason"] == "beyond_reach"
+    assert "UAVs would have to fly up to" in unassigned[6]["message"]
+    assert unassigned[2]["reason"] == "inside_zone"
+    assert "Airport" in unassigned[2]["message"]
     assert schedule["sites"] == [{"name": "Yard", "position": [10.005, 55.998], "is_required": False}]
 
 
@@ -235,7 +235,7 @@ def test_uavs_and_assets_that_were_deleted_meanwhile_do_not_stop_it(here, client
     rebuild()
     tasks.plan_campaign(answer["job"])
     schedule = client.get(f"/api/v1/campaigns/{answer['id']}").json()["schedule"]
-    assert [(item["target"], item["reason"]) for item in schedule["left_out"] if item["target"] == 0] == [(0, "asset_gone")]
+    assert [(item["target"], item["reason"]) for item in schedule["unassigned"] if item["target"] == 0] == [(0, "asset_gone")]
     assert not Mission.objects.filter(targets__asset_id=gone).exists()
 
 
