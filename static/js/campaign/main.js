@@ -11,13 +11,13 @@ import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { percentText } from "../units.js";
 import * as layer from "./campaign_layer.js";
-import { openedOrTold } from "./rules_form.js";
+import { openRules } from "./rules_form.js";
 import { dayCards, factsOf, tooLongCard, unassignedCard, unusedSitesCard } from "./schedule_view.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Campaign, CampaignRoutes, CampaignRulesRequest, CampaignSchedule, Job } from "../api_types.d.ts" */
 /** @import { Box } from "../map/types.d.ts" */
-/** @import { CampaignPageData } from "./types.d.ts" */
+/** @import { GroundPage } from "../ground/types.d.ts" */
 
 /** @type {Campaign | null} */
 let campaign = null;
@@ -41,7 +41,7 @@ const {
     if (placing) void place(position);
   },
 });
-const page = /** @type {CampaignPageData} */ (groundPage);
+const page = /** @type {GroundPage & { campaign: string }} */ (groundPage);
 const address = `/campaigns/${page.campaign}`;
 
 /** Read campaign and routes, and draw them. Rejects with ApiError. */
@@ -83,14 +83,13 @@ async function followPlanning() {
   }
   const had = campaign.schedule;
   try {
-    await followLive(data.id, {
+    const { state } = await followLive(data.id, {
       onProgress(next) {
         job = next;
         drawJob();
       },
-    }).then(({ state }) => {
-      if (state === "cancelled") problem = { words: t("Planning was stopped. Nothing was stored."), canRetry: false };
     });
+    if (state === "cancelled") problem = { words: t("Planning was stopped. Nothing was stored."), canRetry: false };
   } catch (error) {
     if (isAbort(error)) return;
     if (!(error instanceof ApiError) || error.isAway) throw error;
@@ -257,7 +256,7 @@ async function stop() {
 
 async function planAgain() {
   if (!campaign) return;
-  await openedOrTold({
+  await openRules({
     title: t("Plan this campaign again"),
     act: t("Plan"),
     rules: campaign.rules,

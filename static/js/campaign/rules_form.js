@@ -1,5 +1,6 @@
 /** The form of a campaign: where crews start, how far UAVs may be from a launch site, and how long a working day is. */
 
+import { boundsIn } from "../alert_limits/words.js";
 import { ApiError, freshKey, get } from "../api.js";
 import { h } from "../dom.js";
 import { choiceField, numberField, switchField, textField } from "../page/fields.js";
@@ -27,10 +28,16 @@ const USUAL = {
   proposes_sites: /** @type {boolean} */ (true),
 };
 
-/** @returns {Promise<LaunchSite[]>} */
-async function bases() {
-  const { data } = /** @type {Answer<BasePage>} */ (await get(`/bases?limit=${MAX_BASES}`));
-  return data.results.map(({ name, position }) => ({ name, position, is_required: false }));
+/** The bases; null where they cannot be read, which is shown. @returns {Promise<LaunchSite[] | null>} */
+async function readBases() {
+  try {
+    const { data } = /** @type {Answer<BasePage>} */ (await get(`/bases?limit=${MAX_BASES}`));
+    return data.results.map(({ name, position }) => ({ name, position, is_required: false }));
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
+    return null;
+  }
 }
 
 /**
@@ -45,9 +52,10 @@ async function bases() {
  * @param {string} [options.hint]
  * @param {(stated: { name: string, rules: CampaignRulesRequest, key: string }) => Promise<unknown>} options.send `key`: of all its tries
  */
-async function openRules({ title, act, name, rules = null, starts = [], hint = "", send }) {
+export async function openRules({ title, act, name, rules = null, starts = [], hint = "", send }) {
   const key = freshKey();
-  const known = await bases();
+  const known = await readBases();
+  if (!known) return;
   const all = [...known, ...starts];
   const places = rules && !all.some(({ position }) => isAt(position, rules.start)) ? [placeOf(rules), ...all] : all;
   const own = (rules?.sites ?? []).filter(({ position }) => !known.some((base) => isAt(base.position, position)));
@@ -57,7 +65,7 @@ async function openRules({ title, act, name, rules = null, starts = [], hint = "
   const { name: nameField, ...others } = fields;
   const form = h(
     "form",
-    { novalidate: false },
+    {},
     name !== undefined && nameField.element,
     h(
       "div",
@@ -111,16 +119,6 @@ async function openRules({ title, act, name, rules = null, starts = [], hint = "
   (name === undefined ? fields.start : nameField).input.focus();
 }
 
-/** Open the form; where the server cannot be reached for it, say so. @param {Parameters<typeof openRules>[0]} options */
-export async function openedOrTold(options) {
-  try {
-    await openRules(options);
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    toast(error.message);
-  }
-}
-
 /**
  * @param {typeof USUAL} values
  * @param {Place[]} places where crews can start
@@ -146,7 +144,7 @@ function fieldsOf(values, places, { name, start: startsAt }) {
       required: true,
       factor: LONG_UNIT.metres,
       unit: LONG_UNIT.unit,
-      ...boundsIn(100, 50_000, LONG_UNIT.metres),
+      ...boundsIn([100, 50_000], LONG_UNIT.metres),
       hint: t("Such as the range of sight or of the radio. Routes may lead farther; the plan says where."),
     }),
     flights: numberField("flights", t("Flights of each UAV at a site"), values.flights, {
@@ -165,7 +163,7 @@ function fieldsOf(values, places, { name, start: startsAt }) {
     drive_kmh: numberField("drive_kmh", t("Driving speed"), values.drive_kmh, {
       required: true,
       factor: LONG_UNIT.metres / 1000,
-      ...boundsIn(5, 130, LONG_UNIT.metres / 1000),
+      ...boundsIn([5, 130], LONG_UNIT.metres / 1000),
       digits: 0,
       unit: LONG_UNIT.unit === "km" ? "km/h" : "mph",
       hint: t("Drives are estimated from the straight line."),
@@ -200,12 +198,6 @@ const statedRules = (fields, places, { known, own }) => ({
   drive_kmh: fields.drive_kmh.read() ?? USUAL.drive_kmh,
   sites: [...(fields.uses_bases.read() ? known : []), ...own],
   proposes_sites: fields.proposes_sites.read(),
-});
-
-/** Bounds in shown units, rounded inwards to a tenth. @param {number} min @param {number} max @param {number} factor */
-const boundsIn = (min, max, factor) => ({
-  min: Math.ceil((10 * min) / factor) / 10,
-  max: Math.floor((10 * max) / factor) / 10,
 });
 
 /** @param {number[]} left @param {number[]} right */

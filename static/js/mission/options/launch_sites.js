@@ -1,7 +1,7 @@
 /** Turn the targets and UAVs of the page into a campaign: missions from several launch sites over several days. */
 
 import { post } from "../../api.js";
-import { openedOrTold } from "../../campaign/rules_form.js";
+import { openRules } from "../../campaign/rules_form.js";
 import { t } from "../../text.js";
 import { requestOf } from "../selection.js";
 import { proposedName } from "../targets/proposed_name.js";
@@ -34,7 +34,7 @@ export function whyNoCampaign({ selection }) {
 /** Ask for crews and reach, and open the page of the campaign. @param {MissionPageState} state */
 export async function planFromLaunchSites(state) {
   const asked = campaignOf(state);
-  await openedOrTold({
+  await openRules({
     title: t("Plan from launch sites over several days"),
     act: t("Plan the campaign"),
     name: asked.name,
