@@ -2,6 +2,7 @@
 
 import { signInAddress } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
+import { MISSION_STATES } from "../../domain/planned_state.js";
 import { ASKED, CROWDED, LIVE } from "../../live/feed.js";
 import { staleWords } from "../../live/stale.js";
 import { announce } from "../../page/toast.js";
@@ -11,17 +12,6 @@ import { exactClockText, zoneText } from "../../units.js";
 /** @import { LiveMission, LiveUav, MissionState } from "../../api_types.d.ts" */
 /** @import { MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
 
-/** @type {Record<MissionState, string>} */
-const STATES = {
-  draft: t("Draft"),
-  planned: t("Planned"),
-  approved: t("Approved"),
-  dispatched: t("Uploaded"),
-  active: t("In flight"),
-  completed: t("Completed"),
-  aborted: t("Aborted"),
-  failed: t("Failed"),
-};
 /** @type {Partial<Record<MissionState, string>>} */
 const IMAGES = {
   approved: "badge-check",
@@ -56,7 +46,7 @@ function drawState(chip, mission) {
   const image = IMAGES[mission.state];
   chip.dataset.state = mission.state;
   chip.className = `chip ${mission.state}`;
-  setChildren(chip, image && icon(image, "small"), STATES[mission.state]);
+  setChildren(chip, image && icon(image, "small"), MISSION_STATES[mission.state]);
 }
 
 /** @param {Readonly<MonitorState>} state */
