@@ -74,7 +74,7 @@ class ReturnCheckSerializer(serializers.Serializer):
         help_text="that its autopilot ignores the fence of the mission; empty: it does not, or is not known to",
     )
     detail = serializers.CharField(
-        allow_blank=True, help_text="parameters of the autopilot that were not read, for whoever sets it up; empty: none"
+        allow_blank=True, help_text="parameters of the autopilot that were not read, for the technician who sets it up; empty: none"
     )
 
 
