@@ -79,7 +79,7 @@ def steps_to_do(purpose: str, base_python: str) -> list[Step]:
     is_check = purpose.startswith("check")
     steps = []
     if packages := system_packages.missing_packages(purpose):
-        about_s = 30.0 if purpose == "check" else 15.0
+        about_s = 30.0
         steps.append(Step(f"Debian packages {' '.join(packages)}", about_s, lambda step: system_packages.install_and_verify(purpose)))
 
     locks = ["requirements.txt", "requirements-dev.txt"] if is_check else ["requirements.txt"]
