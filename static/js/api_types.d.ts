@@ -5654,7 +5654,7 @@ export interface components {
             read_at: string | null;
             /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
             fence_warning: string;
-            /** @description parameters of the autopilot that were not read, for whoever sets it up; empty: none */
+            /** @description parameters of the autopilot that were not read, for the technician who sets it up; empty: none */
             detail: string;
             /** Format: uuid */
             mission: string | null;
@@ -6977,7 +6977,7 @@ export interface components {
             read_at: string | null;
             /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
             fence_warning: string;
-            /** @description parameters of the autopilot that were not read, for whoever sets it up; empty: none */
+            /** @description parameters of the autopilot that were not read, for the technician who sets it up; empty: none */
             detail: string;
         };
         ReturnChecks: {
