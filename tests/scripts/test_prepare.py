@@ -61,3 +61,16 @@ def test_an_installation_that_has_applied_what_a_migration_replaces_can_work():
     prepare.migrate()
     assert squashed.keys() <= recorder.applied_migrations().keys()
     assert NO_MIGRATIONS not in Readiness().faults()
+
+
+def test_the_data_wait_for_the_core_and_its_failure_ends_the_start(monkeypatch, capsys):
+    def fail() -> None:
+        raise subprocess.CalledProcessError(1, "search")
+
+    monkeypatch.setattr(prepare, "compile_core", fail)
+    monkeypatch.setattr(prepare, "is_core_compiled", lambda: True)
+    prepare.wait_for_core()
+    assert capsys.readouterr().out == ""
+    monkeypatch.setattr(prepare, "is_core_compiled", lambda: False)
+    with pytest.raises(CommandError, match="search"):
+        prepare.wait_for_core()
