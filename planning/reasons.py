@@ -51,9 +51,12 @@ SENTENCES = register_sentences(
         "tied_to_unable": gettext_noop("It is tied to %(uav)s, which cannot fly to it."),
         "tied_to_full": gettext_noop("It is tied to %(uav)s, which has as many targets as it may have."),
         "photos_meet_zone": gettext_noop("Its photos would be taken inside %(zone)s, or too near to it."),
+        "photos_bridge_height": gettext_noop("The height of this bridge's pylons or arches is not known. State the height of the bridge."),
         "photos_ground_unknown": gettext_noop("Photos near wires need terrain data under the whole route. Upload terrain that covers it."),
-        "photos_need_terrain": gettext_noop("Photos near wires need terrain data around the tower. Upload terrain that covers it."),
-        "photos_not_a_tower": gettext_noop("Photos are planned of power towers that carry a line."),
+        "photos_need_terrain": gettext_noop("Photos need terrain data around the tower or bridge. Upload terrain that covers it."),
+        "photos_not_a_tower": gettext_noop(
+            "Photos are planned of power towers that carry a line, and of bridges; those of wires of towers alone."
+        ),
         "photos_too_many": gettext_noop(
             "It would take too many photos. Choose a coarser ground sample distance, or a camera with more pixels."
         ),

@@ -52,7 +52,7 @@ class Measured(NamedTuple):
 def measured(stands: StandingTower, key: str, gsd_m: float) -> Measured:
     camera, rules = catalogue()[key].camera, DetailRules(gsd_m)
     began = time.process_time()
-    views = detail_views(stands.solid, stands.keep_out, camera, rules)
+    views = detail_views(stands.site, camera, rules)
     planned = time.process_time()
     flight = view_flight(views.poses, stands.keep_out, stands.entry, stands.entry)
     flown = time.process_time()
@@ -122,7 +122,7 @@ def summary(cases: list[Measured]) -> list[str]:
 def warm_up() -> DetailViews:
     """Import and compile what the first plan would."""
     stands = standing(TOWERS["wooden pole, 20 kV"])
-    views = detail_views(stands.solid, stands.keep_out, catalogue()[CAMERAS[0]].camera, DetailRules(GSDS_M[0]))
+    views = detail_views(stands.site, catalogue()[CAMERAS[0]].camera, DetailRules(GSDS_M[0]))
     view_flight(views.poses, stands.keep_out, stands.entry, stands.entry)
     return views
 

@@ -1,8 +1,7 @@
 """Map data of a box for the 3D view: terrain, supports and spans, railways, bridges and zones."""
 
 import math
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypedDict, TypeVar
 
@@ -18,6 +17,7 @@ from inspection.models import Asset, AssetKind, NoFlyZone
 from inspection.network.infrastructure import InfrastructureWays
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.rules import UNTAGGED_HEIGHT_M
+from inspection.scene.bridges import deck_of
 from inspection.scene.overhead import Overhead, overhead
 from inspection.scene.supports import DrawnSpan, DrawnSupport, LineFacts, SceneSupportFacts, drawn
 from inspection.selectors.assets import Box, area_of
@@ -26,9 +26,6 @@ from inspection.selectors.terrain import ground_heights_m
 from inspection.selectors.terrain_models import finest_step_m, terrain_models
 from inspection.selectors.zone_table import zone_table
 
-LAYER_M = 6.5  # clearance under a bridge over a road or railway, deck included
-MAX_LAYERS = 5
-_LAYER = re.compile(r"-?[0-9]{1,3}")
 RECIPE = 2  # part of the ETag: incremented when the content of a scene changes
 MIN_SIDE_M, MAX_SIDE_M = 50.0, 40_000.0
 MAX_SHRINKING_LAT_DEG = 85.0
@@ -39,17 +36,6 @@ MAX_SUPPORTS, MAX_SPANS, MAX_RAILWAYS, MAX_BRIDGES, MAX_ZONES = 4_000, 6_000, 1_
 SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred metres: for outlines of zones
 MAX_CORNERS = 4_000  # of a zone
 Row = TypeVar("Row", Asset, NoFlyZone)
-
-
-def layer_of(tags: Mapping[str, str]) -> int:
-    """Return the number of layers below it; 1 if it is not stated."""
-    stated = _LAYER.fullmatch(tags.get("layer", "").strip())
-    return min(max(int(stated[0]), 1), MAX_LAYERS) if stated else 1
-
-
-def deck_amsl_m(ground_m: FloatArray, layer: int) -> float:
-    """Return a level deck height: at least the highest terrain at its edge, and layer clearances over the lowest. ground_m (n,)."""
-    return float(max(np.max(ground_m), np.min(ground_m) + layer * LAYER_M))
 
 
 class UnfitBox(Exception):
@@ -314,11 +300,7 @@ def _bridges(rows: list[tuple[Asset, shapely.geometry.base.BaseGeometry]], groun
 
 def _bridge(asset: Asset, shape: shapely.geometry.base.BaseGeometry, edge_m: FloatArray) -> SceneBridge:
     """Return a bridge. height_m is its top as planners count it. edge_m: the terrain at its corners."""
-    tags = asset.tags or (asset.parts[0]["tags"] if asset.parts else {})
-    if asset.height_m is not None:
-        deck_m, source = float(edge_m.mean()) + asset.height_m, "tag"
-    else:
-        deck_m, source = deck_amsl_m(edge_m, layer_of(tags)), "layer"
+    deck_m, source = deck_of(edge_m, asset.height_m, asset.tags or (asset.parts[0]["tags"] if asset.parts else {}))
     height_m = UNTAGGED_HEIGHT_M[NodeKind.BRIDGE] if asset.height_m is None else asset.height_m
     return SceneBridge(asset, shape, deck_m, source, height_m, "assumed" if asset.height_m is None else "tag")
 

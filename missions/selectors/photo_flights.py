@@ -1,4 +1,4 @@
-"""Flights through the photos that targets ask for, planned once for each tower, camera and map, and kept."""
+"""Flights through the photos that targets ask for, planned once for each asset, camera and map, and kept."""
 
 import contextlib
 import hashlib
@@ -13,7 +13,7 @@ from django.core.cache import cache
 from inspection.models import Asset
 from inspection.selectors.planning import DatasetVersion, terrain_at
 from missions.models import Route, Waypoint
-from missions.selectors.tower_sites import TowerOnMap, tower_on_map
+from missions.selectors.inspection_sites import BridgeHeightUnknown, SiteOnMap, site_on_map
 from operation.reasons import Reason, reason_from_json
 from operation.version import VERSION as PROGRAM_VERSION
 from planning.context import ResolvedTarget
@@ -28,19 +28,19 @@ from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.jobs.planning_lock import hold_planning_lock
 
 KEPT_S = 7 * 86_400
-VERSION = 4  # counts the changes of what a flight is planned by, or is kept as
+VERSION = 5  # counts the changes of what a flight is planned by, or is kept as
 
 AnyTarget = TypeVar("AnyTarget", bound=ResolvedTarget)
 OnPhotos = Callable[[int, int], None]  # of targets with photos: so many are planned, of so many
 
 
 class NotATower(Exception):
-    """The asset is no support of a line: only these have models yet."""
+    """The asset is no support of a line, and no bridge or asked for wires: it has no model."""
 
 
-def planned_views(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ViewPlan]:
-    """Return the site of a tower and its photos. Raises NotATower, TooManyPhotos or NoWay."""
-    found = tower_on_map(asset, views)
+def planned_views(asset: Asset, views: ViewsRequest) -> tuple[SiteOnMap, ViewPlan]:
+    """Return the site of an asset and its photos. Raises NotATower, BridgeHeightUnknown, TooManyPhotos or NoWay."""
+    found = site_on_map(asset, views)
     if found is None:
         raise NotATower
     with hold_planning_lock():
@@ -51,7 +51,7 @@ def planned_views(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ViewPl
         return found, detail_plan(found.site, views.camera, DetailRules(views.gsd_m), ViewSpeeds())
 
 
-def keep_photo_flight(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: ViewPlan, version: DatasetVersion) -> None:
+def keep_photo_flight(asset: Asset, views: ViewsRequest, found: SiteOnMap, plan: ViewPlan, version: DatasetVersion) -> None:
     """Keep the flight of a plan of photos, so that a mission with them is planned at once."""
     _keep(_key(asset.pk, views, version), _flight(found, plan, views))
 
@@ -83,6 +83,8 @@ def _photo_flight(asset: Asset, views: ViewsRequest, version: DatasetVersion) ->
         flight: PhotoFlight | Reason = _flight(*planned_views(asset, views), views)
     except NotATower:
         return Reason("photos_not_a_tower")
+    except BridgeHeightUnknown:
+        flight = Reason("photos_bridge_height")
     except TooManyPhotos:
         flight = Reason("photos_too_many")
     except NoWay:
@@ -91,7 +93,7 @@ def _photo_flight(asset: Asset, views: ViewsRequest, version: DatasetVersion) ->
     return flight
 
 
-def _flight(found: TowerOnMap, plan: ViewPlan, views: ViewsRequest) -> PhotoFlight | Reason:
+def _flight(found: SiteOnMap, plan: ViewPlan, views: ViewsRequest) -> PhotoFlight | Reason:
     if found.base_amsl_m is None:
         return Reason("photos_need_terrain")
     if not len(plan.poses):
@@ -103,7 +105,7 @@ def _flight(found: TowerOnMap, plan: ViewPlan, views: ViewsRequest) -> PhotoFlig
 
 
 def kept_by(asset: int, views: ViewsRequest, version: DatasetVersion) -> dict[str, Any]:
-    """Return what a tower's photos are planned and proven by; what is kept of them is kept by it."""
+    """Return what an asset's photos are planned and proven by; what is kept of them is kept by it."""
     return {
         "version": [VERSION, PROGRAM_VERSION], "asset": asset, "views": views_to_json(views), "map": str(version),
         "terrain": str(terrain_at(version)), "rules": [repr(settings.CLEARANCE_RULES), settings.FLIGHT_RULES.max_agl_m],

@@ -93,12 +93,12 @@ class CameraCatalogueSerializer(serializers.Serializer):
 
 
 class ViewsInputSerializer(KnownFieldsSerializer):
-    """Photos of every part, of the whole from four sides, or of the wires: with which camera, and how fine."""
+    """Photos of every part, of the whole from four sides, or of a tower's wires: with which camera, and how fine."""
 
     pattern = serializers.ChoiceField(
         choices=[own.value for own in ViewPattern], required=False,
-        help_text="detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the "
-        "middle of each span, at most 500 m, from both sides",
+        help_text="detail, which is usual: every part; overview: the whole of it in each of four photos; spans: the wires of a "
+        "tower up to the middle of each span, at most 500 m, from both sides",
     )  # fmt: skip
     camera = CameraSerializer(required=False)
     camera_key = serializers.CharField(required=False, help_text="of the catalogue, in place of `camera`")
@@ -129,7 +129,7 @@ def views_request(values: Mapping[str, Any]) -> ViewsRequest:
 
 
 class ViewPlanInputSerializer(ViewsInputSerializer):
-    asset = serializers.IntegerField(min_value=1, help_text="id of a power tower")
+    asset = serializers.IntegerField(min_value=1, help_text="id of a power tower or a bridge")
 
 
 class ViewsSerializer(serializers.Serializer):
@@ -163,10 +163,24 @@ class TowerModelSerializer(serializers.Serializer):
     bearing_deg = serializers.FloatField(help_text="of the line at the tower")
 
 
+class BridgeModelSerializer(serializers.Serializer):
+    """What a bridge is taken to look like. Heights count from the ground in its middle."""
+
+    deck_height_m = serializers.FloatField()
+    deck_source = serializers.ChoiceField(
+        choices=["tag", "layer"], help_text="tag: its stated height; layer: the terrain at its ends, and 6.5 m for each layer below it"
+    )
+    top_m = serializers.FloatField(help_text="as high as plans count it; flights pass above that")
+    length_m = serializers.FloatField()
+    width_m = serializers.FloatField()
+    piers = serializers.IntegerField(help_text="assumed every 30 m: map data do not state where they are")
+    bearing_deg = serializers.FloatField(help_text="of its axis, 0 to 180")
+
+
 class PlannedPhotoSerializer(serializers.Serializer):
     position = serializers.ListField(child=serializers.FloatField(), help_text="lon, lat")
     height_agl_m = serializers.FloatField(allow_null=True, help_text="above the ground under the UAV; null without terrain data there")
-    height_m = serializers.FloatField(help_text="above the ground at the tower")
+    height_m = serializers.FloatField(help_text="above the ground at the tower, or in the middle of the bridge")
     yaw_deg = serializers.FloatField(help_text="from true north, clockwise")
     pitch_deg = serializers.FloatField(help_text="0 is the horizon, -90 straight down")
 
@@ -195,7 +209,7 @@ class NotCountedSerializer(serializers.Serializer):
     reason = serializers.ChoiceField(
         choices=[own.value for own in NotCounted],
         help_text="failed: the camera reported a failure; position, height, attitude: unknown, of heights also their reference; tilted: "
-        "more roll than 3°; far: from the tower",
+        "more roll than 3°; far: from the asset",
     )
     count = serializers.IntegerField()
 
@@ -246,7 +260,7 @@ class TargetCoverageSerializer(serializers.Serializer):
     camera = serializers.CharField()
     gsd_mm = serializers.FloatField()
     focal_length_mm = serializers.FloatField(allow_null=True)
-    promised = ShownSerializer(allow_null=True, help_text="by the planned photos; null where none are planned, or the tower is gone")
+    promised = ShownSerializer(allow_null=True, help_text="by the planned photos; null where none are planned, or the asset is gone")
     rehearsed = RehearsedCoverageSerializer(many=True, help_text="one of each run")
     achieved = AchievedCoverageSerializer(allow_null=True, help_text="by reported photos; null while nothing was flown")
     is_short = serializers.BooleanField(
@@ -272,15 +286,16 @@ class ViewPlanSerializer(ViewsSerializer):
     focal_length_mm = serializers.FloatField(help_text="with which the photos are taken")
     farthest_m = serializers.FloatField(help_text="distance up to which they are fine enough")
     clearance_m = serializers.FloatField(help_text="least distance from wires and supports")
-    has_terrain = serializers.BooleanField(help_text="without, the ground counts as level with the tower's foot")
-    model = TowerModelSerializer()
+    has_terrain = serializers.BooleanField(help_text="without, the ground counts as level with the foot of the asset")
+    model = TowerModelSerializer(allow_null=True, help_text="of a tower")
+    bridge = BridgeModelSerializer(allow_null=True)
     photos = PlannedPhotoSerializer(many=True, help_text="in the order in which they are taken")
     photos_bound = serializers.IntegerField(
         help_text="no choice of fewer photos among the candidates shows enough; of overviews and wires the number of photos"
     )
     route = serializers.ListField(
         child=serializers.ListField(child=serializers.FloatField()),
-        help_text="lon, lat, and metres above the ground at the tower; from above the tower and back to there",
+        help_text="lon, lat, and metres above the ground at the asset; from above the asset and back to there",
     )
     length_m = serializers.FloatField()
     duration_s = serializers.FloatField()

@@ -18,8 +18,8 @@ from inspection.models import Asset
 from inspection.selectors.planning import DatasetVersion, current_dataset_version
 from missions.hooks.taken_photos import PhotoOfMission, RehearsedPhotos, achieved_photos, rehearsed_photos
 from missions.models import InspectionTarget, Mission
+from missions.selectors.inspection_sites import BridgeHeightUnknown, SiteOnMap, site_on_map
 from missions.selectors.photo_flights import KEPT_S, kept_by
-from missions.selectors.tower_sites import TowerOnMap, tower_on_map
 from missions.services.view_plans import coverage_json
 from planning.task import MM_PER_M, ViewPattern, ViewsRequest, task_from_json
 from planning.trajectory.waypoints import WaypointKind
@@ -194,7 +194,7 @@ class _Proving:
     def __init__(self, asset: Asset, views: ViewsRequest, planned: Sequence[PlannedPhoto], version: DatasetVersion) -> None:
         self._focal_mm = planned[0].focal_mm
         self._by = kept_by(asset.pk, views, version) | {"proof": VERSION, "focal_mm": self._focal_mm}
-        self._tower: Callable[[], tuple[TowerOnMap, ProofSurface] | None] = once(lambda: _tower(asset, views))
+        self._site: Callable[[], tuple[SiteOnMap, ProofSurface] | None] = once(lambda: _site(asset, views))
 
     def shown(self, photos: Sequence[TakenPhoto]) -> Json | None:
         """Return what the photos show, in the shape of the API; None where the tower is none any more."""
@@ -204,10 +204,10 @@ class _Proving:
             kept: Json | None = cache.get(key)
             if kept is not None:
                 return kept
-        tower = self._tower()
-        if tower is None:
+        site = self._site()
+        if site is None:
             return None
-        found, surface = tower
+        found, surface = site
         with hold_planning_lock():
             proof = surface.proof(photos, self._focal_mm, found.frame, found.base_amsl_m)
         value = {
@@ -220,8 +220,11 @@ class _Proving:
         return value
 
 
-def _tower(asset: Asset, views: ViewsRequest) -> tuple[TowerOnMap, ProofSurface] | None:
-    found = tower_on_map(asset, views)
+def _site(asset: Asset, views: ViewsRequest) -> tuple[SiteOnMap, ProofSurface] | None:
+    try:
+        found = site_on_map(asset, views)
+    except BridgeHeightUnknown:
+        return None
     if found is None:
         return None
     with hold_planning_lock():

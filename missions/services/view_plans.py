@@ -1,4 +1,4 @@
-"""Photos of a tower, planned at a user's request, with the flight through them and the zones that it meets."""
+"""Photos of a tower or a bridge, planned at a user's request, with the flight through them and the zones that it meets."""
 
 import math
 from collections.abc import Sequence
@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from inspection.models import Asset
+from inspection.scene.supports import DrawnSupport
 from inspection.selectors.planning import current_dataset_version
 from inspection.selectors.zone_table import zone_table
+from missions.selectors.inspection_sites import SiteOnMap
 from missions.selectors.photo_flights import keep_photo_flight, planned_views
-from missions.selectors.tower_sites import TowerOnMap
 from missions.selectors.zones import zone_margins
 from planning.checks.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.task import MM_PER_M, ViewsRequest, views_to_json
+from planning.views.bridge_solid import BridgeShape
 from planning.views.coverage import ComponentCoverage, Coverage
 from planning.views.solids import FloatArray
 from planning.views.view_flight import NO_PHOTO
@@ -27,7 +29,7 @@ ZONE_STEP_M = 5.0  # between places of the flight whose heights above ground are
 def plan_views(*, asset: Asset, views: ViewsRequest) -> dict[str, Any]:
     """Return the plan in the shape of the API, and keep its flight for missions.
 
-    Raises NotATower, TooManyPhotos, or NoWay where no flight keeps out of what stands there below the greatest height.
+    Raises NotATower, BridgeHeightUnknown, TooManyPhotos, or NoWay where no flight keeps out of what stands there below the greatest height.
     """
     version = current_dataset_version()
     found, plan = planned_views(asset, views)
@@ -35,8 +37,8 @@ def plan_views(*, asset: Asset, views: ViewsRequest) -> dict[str, Any]:
     return _plan_json(asset, views, found, plan)
 
 
-def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: ViewPlan) -> dict[str, Any]:
-    flight, tower = plan.flight, found.site.tower
+def _plan_json(asset: Asset, views: ViewsRequest, found: SiteOnMap, plan: ViewPlan) -> dict[str, Any]:
+    flight, model = plan.flight, found.model
     positions = found.frame.to_degrees(flight.position[:, :2])
     agl_m = flight.position[:, 2] - found.ground_m(flight.position[:, :2])
     photo_at = np.flatnonzero(flight.photo != NO_PHOTO)
@@ -47,10 +49,8 @@ def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: ViewP
         "farthest_m": plan.lens.farthest_m,
         "clearance_m": found.site.clearance_m,
         "has_terrain": found.base_amsl_m is not None,
-        "model": {
-            "form": tower.form, "height_m": tower.likely_m, "height_source": tower.height_source, "voltage_v": tower.voltage_v,
-            "is_anchor": tower.is_anchor, "bearing_deg": tower.bearing_deg,
-        },
+        "model": _tower_json(model) if isinstance(model, DrawnSupport) else None,
+        "bridge": _bridge_json(model, found) if isinstance(model, BridgeShape) else None,
         "photos": [
             {
                 "position": positions[place].tolist(),
@@ -67,6 +67,20 @@ def _plan_json(asset: Asset, views: ViewsRequest, found: TowerOnMap, plan: ViewP
         "duration_s": plan.seconds,
         "coverage": coverage_json(plan.coverage, plan.components),
         "zones": _zones(found, flight.position),
+    }  # fmt: skip
+
+
+def _tower_json(tower: DrawnSupport) -> dict[str, Any]:
+    return {
+        "form": tower.form, "height_m": tower.likely_m, "height_source": tower.height_source, "voltage_v": tower.voltage_v,
+        "is_anchor": tower.is_anchor, "bearing_deg": tower.bearing_deg,
+    }  # fmt: skip
+
+
+def _bridge_json(bridge: BridgeShape, found: SiteOnMap) -> dict[str, Any]:
+    return {
+        "deck_height_m": bridge.deck_m, "deck_source": found.deck_source, "top_m": bridge.top_m, "length_m": bridge.length_m,
+        "width_m": bridge.width_m, "piers": bridge.piers, "bearing_deg": bridge.bearing_deg,
     }  # fmt: skip
 
 
@@ -87,7 +101,7 @@ def _component_json(row: ComponentCoverage) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _zones(found: TowerOnMap, position: FloatArray) -> list[dict[str, Any]]:
+def _zones(found: SiteOnMap, position: FloatArray) -> list[dict[str, Any]]:
     """The zones that the flight meets at any time, each once; unknown heights may be any."""
     places = _every(ZONE_STEP_M, position)
     agl_m = places[:, 2] - found.ground_m(places[:, :2])

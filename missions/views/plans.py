@@ -16,6 +16,7 @@ from rest_framework.views import APIView
 from inspection.models import Asset
 from missions import services
 from missions.reason_texts import plan_with_texts
+from missions.selectors.inspection_sites import BridgeHeightUnknown
 from missions.selectors.photo_flights import NotATower
 from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
@@ -44,7 +45,7 @@ from workspace.api.throttling import ScopedRate
 from workspace.jobs.services import TooManyJobs, create_job_within, refuse_jobs_beyond
 from workspace.jobs.views import NoRoomToWait, preferred_wait_s, wait_for_job
 from workspace.models import Job, JobState, Role, User
-from workspace.reason_texts import with_message
+from workspace.reason_texts import reason_text, with_message
 from workspace.tasks import send_job_on_commit
 
 PHOTOS_EFFORT = 6  # planning the photos of a target takes as long as so many targets
@@ -140,10 +141,11 @@ class ViewPlans(APIView):
 
     @extend_schema(
         operation_id="plan_views",
-        summary="Plan photos of a tower or its wires at a ground sample distance, clear of the wires",
-        description="The fewest photos found that show what can be shown of the tower, or photos of its wires with an overlap of 30 %; "
-        "the flight through them, and the coverage of each component. The tower is modelled from its tags; wires count with their "
-        "swing. Nothing is stored.",
+        summary="Plan photos of a tower, its wires or a bridge at a ground sample distance, clear of wires and structures",
+        description="The fewest photos found that show what can be shown of the tower or bridge, or photos of a tower's wires with an "
+        "overlap of 30 %; the flight through them, and the coverage of each component. Assets are modelled from their tags: of a bridge "
+        "the height of its deck is estimated, and piers are assumed every 30 m. Wires count with their swing. The UAV never flies under "
+        "a bridge. Nothing is stored.",
         request=ViewPlanInputSerializer,
         responses=ViewPlanSerializer,
     )
@@ -155,8 +157,11 @@ class ViewPlans(APIView):
         try:
             plan = plan_views(asset=asset, views=views_request(values))
         except NotATower as error:
-            message = _("Photos are planned of power towers that carry a line.")
+            message = reason_text(Reason("photos_not_a_tower"))
             raise ApiProblem(400, "not_a_tower", message, details={"asset": [message]}) from error
+        except BridgeHeightUnknown as error:
+            message = reason_text(Reason("photos_bridge_height"))
+            raise ApiProblem(409, "bridge_height_unknown", message, details={"asset": [message]}) from error
         except TooManyPhotos as error:
             message = _("It would take too many photos. Choose a coarser ground sample distance, or a camera with more pixels.")
             raise ApiProblem(400, "too_many_photos", message, details={"gsd_mm": [message]}) from error

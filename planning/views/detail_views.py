@@ -1,24 +1,35 @@
 """Photos of every part of an asset at an asked ground sample distance, from outside the clearance."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
+from scipy.spatial.distance import cdist
 
 from planning.views.camera import Camera, Lens, standoff_m
 from planning.views.cover import fewest_photos
 from planning.views.keep_out import KeepOut
 from planning.views.limits import DetailRules, Limits, limits_of
 from planning.views.proof import REACH_M, reach_m
-from planning.views.solids import Component, FloatArray, Patches, Solid, patches_of
+from planning.views.site import InspectionSite
+from planning.views.solids import Component, FloatArray, Patches, patches_of
 from planning.views.visibility import Poses, RayCaster, aim_at, in_frame, line_of_sight
 
 BoolArray = NDArray[np.bool_]
 
 AZIMUTH_STEP_DEG = 15.0
+OUT_ABOVE_M = (0.0, 6.0, 12.0, 20.0)  # of candidate positions above the keep-out: how far from the axis
+# Of assets with several anchors, whose candidate positions come close to one another.
+ROW_AZIMUTH_STEP_DEG, ROW_OUT_ABOVE_M = 30.0, (0.0, 6.0, 15.0)
+ROW_CUBE_M, CUBE_GROWTH, MAX_POSITIONS = 2.0, 1.3, 3_000  # one position in each cube, and at most so many in all
 MIN_PATCH_M, MAX_PATCH_M, PATCHES_HIGH = 1.0, 2.5, 16  # sides of patches, by the height of the asset
+MAX_PATCHES, SIDE2_PER_AREA = (
+    3_000,
+    4.0,
+)  # about: of larger surfaces patches are larger; a patch has about a quarter of the square of its side
 BEYOND_M = 0.5  # of the keep-out, for candidate positions
 ABOVE_M = (0.5, 6.0)  # the top of the keep-out
 DISTANCE_SHARES = (0.0, 0.35, 0.75)  # of the way from the keep-out to the farthest place
@@ -52,14 +63,16 @@ class DetailViews:
     candidates: int = field(default=0)
 
 
-def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailRules) -> DetailViews:
-    """Return the fewest photos found that show the solid, which stands at the origin of its frame.
+def detail_views(site: InspectionSite, camera: Camera, rules: DetailRules) -> DetailViews:
+    """Return the fewest photos found that show the site's asset.
 
     Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance, or too much of it hides.
     """
+    solid, keep_out = site.solid, site.keep_out
     caster = RayCaster([solid])
     farthest_m = reach_m(camera, rules.asked_gsd_m)
-    for patch_m in (float(np.clip(float(solid.box[1][2]) / PATCHES_HIGH, MIN_PATCH_M, MAX_PATCH_M)), MIN_PATCH_M):
+    least_m = max(MIN_PATCH_M, math.sqrt(SIDE2_PER_AREA * solid.area_m2 / MAX_PATCHES))
+    for patch_m in (float(np.clip(float(solid.box[1][2]) / PATCHES_HIGH, least_m, max(MAX_PATCH_M, least_m))), least_m):
         patches = patches_of(solid, patch_m)
         limits = limits_of(patches, keep_out, caster, camera, farthest_m)
         reachable_m2 = float(patches.area_m2[limits.limit == 0].sum())
@@ -67,7 +80,7 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
             break
     if reachable_m2 > MAX_PHOTOS * camera.pixels_wide * camera.pixels_high * rules.asked_gsd_m**2:
         raise TooManyPhotos
-    positions = candidate_positions(solid, keep_out, farthest_m)
+    positions = candidate_positions(site, farthest_m)
     sight = line_of_sight(positions, patches, caster, farthest_m)
     for cube_m in CUBES_M:
         more = _further_positions(limits, np.asarray(~sight.any(axis=0)), cube_m)
@@ -85,31 +98,47 @@ def detail_views(solid: Solid, keep_out: KeepOut, camera: Camera, rules: DetailR
     return DetailViews(photos.only(cover.chosen), lens, patches, shows[cover.chosen], limits, cover.bound, len(photos))
 
 
-def candidate_positions(solid: Solid, keep_out: KeepOut, farthest_m: float) -> FloatArray:
+def candidate_positions(site: InspectionSite, farthest_m: float) -> FloatArray:
     """Places around the asset and above it, outside the keep-out and within the heights; (n, 3) [m]."""
-    _, high = solid.box
-    foot = np.zeros(2)
-    lowest_m, limit_m = keep_out.band.limits_between(foot, foot)
+    if len(site.anchors) == 1:
+        return _around(site, site.anchors[0], farthest_m, AZIMUTH_STEP_DEG, OUT_ABOVE_M)
+    found = [_around(site, anchor, farthest_m, ROW_AZIMUTH_STEP_DEG, ROW_OUT_ABOVE_M) for anchor in site.anchors]
+    positions = np.concatenate(found)
+    cube_m = ROW_CUBE_M
+    while True:
+        _, first = np.unique(np.floor(positions / cube_m), axis=0, return_index=True)
+        if len(first) <= MAX_POSITIONS:
+            return positions[np.sort(first)]
+        cube_m *= CUBE_GROWTH
+
+
+def _around(
+    site: InspectionSite, anchor: FloatArray, farthest_m: float, step_deg: float, out_above_m: Sequence[float]
+) -> FloatArray:  # fmt: skip
+    """Candidate positions around a place (2,) of the asset."""
+    keep_out, (_, high) = site.keep_out, site.solid.box
+    lowest_m, limit_m = keep_out.band.limits_between(anchor, anchor)
     lowest_m = min(lowest_m, float(keep_out.band.low_m.min()))
-    top_m = max(keep_out.top_at(foot), float(high[2]))
+    top_m = max(keep_out.top_at(anchor), float(high[2]))
     highest_m = min(float(high[2]) + min(0.7 * farthest_m, MAX_ABOVE_M), limit_m)
     count = max(math.ceil((highest_m - lowest_m) / max(MIN_LEVELS_M, highest_m / LEVELS)), 1)
     levels_m = np.linspace(lowest_m, max(highest_m, lowest_m), count + 1)
+    beside_m = farthest_m + (float(np.abs(high[:2]).max()) if len(site.anchors) == 1 else 0.0)
     found = []
-    for azimuth in np.arange(0.0, 360.0, AZIMUTH_STEP_DEG):
+    for azimuth in np.arange(0.0, 360.0, step_deg):
         direction = np.array([math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
         for level_m in levels_m.tolist():
-            near_m = _first_outside_m(direction, level_m, keep_out)
-            if near_m is None or near_m > farthest_m + float(np.abs(high[:2]).max()):
+            near_m = _first_outside_m(anchor, direction, level_m, keep_out)
+            if near_m is None or near_m > beside_m:
                 continue
             shares = DISTANCE_SHARES if farthest_m > near_m else DISTANCE_SHARES[:1]
-            found += [(*(direction * (near_m + share * (farthest_m - near_m))), level_m) for share in shares]
+            found += [(*(anchor + direction * (near_m + share * (farthest_m - near_m))), level_m) for share in shares]
     for above_m in ABOVE_M:
         level_m = top_m + above_m
-        for out_m in (0.0, 6.0, 12.0, 20.0):
+        for out_m in out_above_m:
             count = 1 if out_m == 0.0 else 12
             for turn in np.radians(np.arange(count) * 360.0 / count).tolist():
-                found.append((out_m * math.sin(turn), out_m * math.cos(turn), level_m))
+                found.append((anchor[0] + out_m * math.sin(turn), anchor[1] + out_m * math.cos(turn), level_m))
     positions = np.array(found).reshape(-1, 3)
     return positions[~keep_out.holds(positions)] if len(positions) else positions
 
@@ -121,10 +150,10 @@ def _further_positions(limits: Limits, missing: BoolArray, cube_m: float) -> Flo
     return places[first]
 
 
-def _first_outside_m(direction: FloatArray, level_m: float, keep_out: KeepOut) -> float | None:
-    """How far out from the axis, in a direction, the last column of the keep-out ends at a level; None where none ends near enough."""
+def _first_outside_m(anchor: FloatArray, direction: FloatArray, level_m: float, keep_out: KeepOut) -> float | None:
+    """How far out from a place, in a direction, the last column of the keep-out ends at a level; None where none ends near enough."""
     out_m = np.arange(0.0, REACH_M, 0.5)
-    points = np.column_stack([out_m[:, None] * direction, np.full(len(out_m), level_m)])
+    points = np.column_stack([anchor + out_m[:, None] * direction, np.full(len(out_m), level_m)])
     inside = np.flatnonzero(keep_out.in_column(points))
     if not len(inside):
         return BEYOND_M
@@ -145,7 +174,7 @@ def _pitch_reached(positions: FloatArray, patches: Patches, camera: Camera) -> B
 
 def _lens(camera: Camera, rules: DetailRules, positions: FloatArray, patches: Patches, sight: BoolArray) -> Lens:
     """The shortest focal length that reaches nearly all that the longest does: its pictures are the widest."""
-    distance_m = np.linalg.norm(positions[:, None, :] - patches.centre, axis=2)
+    distance_m = cdist(positions, patches.centre)
     nearest_m = camera.nearest_focus_m
 
     def seen_m2(focal_mm: float) -> float:

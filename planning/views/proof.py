@@ -1,9 +1,10 @@
-"""What photos of a tower prove, from the poses that they were planned or taken at.
+"""What photos of an asset prove, from the poses that they were planned or taken at.
 
 The camera counts as level: gimbals keep the horizon. A photo that states more roll than MAX_ROLL_DEG, whose picture is turned by more than
 its margin, is not counted. No camera reports its focal length reliably: photos count with the planned one.
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,14 +16,14 @@ from inspection.geodesy.local_frame import LocalFrame
 from planning.views.camera import Camera, Lens, standoff_m
 from planning.views.coverage import ComponentCoverage, Coverage, by_component, coverage_of
 from planning.views.limits import ViewSampling, limits_of
-from planning.views.site import TowerSite
+from planning.views.site import InspectionSite
 from planning.views.solids import IntArray, Patches, Solid, patches_of
 from planning.views.visibility import Poses, RayCaster
 
 MIN_PITCH_DEG = -80.0
 REACH_M = 80.0  # from the asset's axis, of candidate positions
-PROOF_PATCH_M = 1.0  # sides of the patches on which coverage is measured
-MAX_AWAY_M = 2.0 * REACH_M  # from the tower's axis: beyond, a photo is of something else, or its position is wrong
+PROOF_PATCH_M, PROOF_PATCHES = 1.0, 20_000  # sides of the patches on which coverage is measured; larger ones of more surface
+MAX_AWAY_M = 2.0 * REACH_M  # from the asset: beyond, a photo is of something else, or its position is wrong
 WIRE_SAMPLING = ViewSampling((0.0, 30.0, 58.0), 8, (0.4, 0.7, 0.999))  # of which there is much that looks the same
 MAX_ROLL_DEG = 3.0  # turns the edge of a picture by as much as the margin within which photos are planned
 MAX_AMSL_M = 10_000.0
@@ -36,7 +37,7 @@ class NotCounted(StrEnum):
     HEIGHT = "height"  # its reference is unknown
     ATTITUDE = "attitude"  # where the camera looked is unknown
     TILTED = "tilted"  # more than MAX_ROLL_DEG
-    FAR = "far"  # from the tower, more than MAX_AWAY_M or half of its longest span
+    FAR = "far"  # from the asset, more than MAX_AWAY_M or half of its longest span
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +65,9 @@ class Proof:
 
 @dataclass(frozen=True, eq=False)
 class ProofSurface:
-    """The surface of a site's tower or wires, cut into patches, with why no photo can show some of them (places in LIMITS).
+    """The surface of a site's asset or wires, cut into patches, with why no photo can show some of them (places in LIMITS).
 
-    away_m: from the tower's axis, up to where photos count.
+    away_m: from its middle, up to where photos count.
     """
 
     solid: Solid
@@ -81,7 +82,7 @@ class ProofSurface:
         return coverage_of(poses, lens, self.camera, self.patches, self.caster, self.limit)
 
     def proof(self, photos: Sequence[TakenPhoto], focal_mm: float, frame: LocalFrame, base_amsl_m: float | None) -> Proof:
-        """Return what photos at this focal length show. base_amsl_m: of the tower's foot; without one no height is known over it."""
+        """Return what photos at this focal length show. base_amsl_m: of the asset's foot; without one no height is known over it."""
         poses, not_counted = _counted(photos, frame, base_amsl_m, self.away_m)
         coverage = self.coverage(poses, self.lens(focal_mm))
         return Proof(coverage, by_component(self.solid, coverage), len(poses), not_counted)
@@ -101,18 +102,19 @@ def reach_m(camera: Camera, asked_gsd_m: float) -> float:
     return min(standoff_m(camera, asked_gsd_m, camera.focal_lengths_mm[-1]), REACH_M)
 
 
-def proof_surface(site: TowerSite, camera: Camera, asked_gsd_m: float, wires: Solid | None = None) -> ProofSurface:
-    """Return the surface on which photos with this camera are proven: of the tower, or its wires. camera: as flown_camera has it."""
+def proof_surface(site: InspectionSite, camera: Camera, asked_gsd_m: float, wires: Solid | None = None) -> ProofSurface:
+    """Return the surface on which photos with this camera are proven: of the asset, or a tower's wires. camera: as flown_camera has it."""
     solid = site.solid if wires is None else wires
-    patches, caster = patches_of(solid, PROOF_PATCH_M), RayCaster([site.solid])
+    patch_m = max(PROOF_PATCH_M, math.sqrt(2.0 * solid.area_m2 / PROOF_PATCHES)) if wires is None else PROOF_PATCH_M
+    patches, caster = patches_of(solid, patch_m), RayCaster([site.solid])
     sampling = ViewSampling() if wires is None else WIRE_SAMPLING
     limits = limits_of(patches, site.keep_out, caster, camera, reach_m(camera, asked_gsd_m), sampling)
-    away_m = MAX_AWAY_M if wires is None else max(MAX_AWAY_M, site.around_m)
+    away_m = site.reach_m + MAX_AWAY_M if wires is None else max(MAX_AWAY_M, site.around_m)
     return ProofSurface(solid, camera, asked_gsd_m, patches, caster, limits.limit, away_m)
 
 
 def why_not_counted(photo: TakenPhoto) -> NotCounted | None:
-    """Return why a photo counts for no tower; None where it may. Values that cannot be are unknown."""
+    """Return why a photo counts for no asset; None where it may. Values that cannot be are unknown."""
     if not photo.is_taken:
         return NotCounted.FAILED
     if not (_is_within(photo.lon, 180.0) and _is_within(photo.lat, 90.0)):
@@ -128,7 +130,7 @@ def why_not_counted(photo: TakenPhoto) -> NotCounted | None:
 def _counted(
     photos: Sequence[TakenPhoto], frame: LocalFrame, base_amsl_m: float | None, away_m: float
 ) -> tuple[Poses, dict[NotCounted, int]]:  # fmt: skip
-    """Return the poses of the photos that count, in the frame around the tower's foot, and the numbers of the others."""
+    """Return the poses of the photos that count, in the frame around the asset's foot, and the numbers of the others."""
     reasons: Counter[NotCounted] = Counter()
     rows = []
     for photo in photos:

@@ -1,16 +1,21 @@
-"""A tower among its wires and neighbours: what a detail inspection flies around."""
+"""A tower or a bridge among wires and neighbours: what the photos of an inspection are flown around."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from inspection.scene.supports import DrawnSupport
+from planning.views.bridge_solid import BridgeShape
 from planning.views.ground_band import GroundBand
 from planning.views.keep_out import SITE_M, ClearanceRules, KeepOut, Obstacle, Span, clearance_m, keep_out
-from planning.views.solids import Solid
+from planning.views.solids import FloatArray, Solid
 from planning.views.tower_solid import tower_solid
 
 HOTTEST_CATENARY_M = 800.0  # constant C of the catenary of a hot wire, whose sag is length^2 / (8 C)
+CONTACT_WIRE_V = 25_000.0  # of electric railways, which a bridge may carry
+ON_DECK_M = 12.0  # masts of contact wires, lamp posts and vehicles, over the deck
 
 
 @dataclass(frozen=True)
@@ -51,22 +56,21 @@ class WireBand:
 
 
 @dataclass(frozen=True, eq=False)
-class TowerSite:
-    """The inspected tower, which is supports[0] and stands at the origin, and what is kept from it and its surroundings.
+class InspectionSite:
+    """The inspected asset, whose foot or middle is the origin, and what is kept from it and its surroundings.
 
-    bands: of its spans. around_m: how far from the tower its surroundings are known.
+    bearing_deg: of a tower's line, of a bridge's axis. bands: of a tower's spans. around_m: how far from the asset its surroundings are
+    known. anchors (n, 2): places of the asset around which photos are looked for; reach_m: to its farthest corner, 0 of towers.
     """
 
-    supports: tuple[StandingSupport, ...]
     solid: Solid
+    bearing_deg: float
     clearance_m: float
     keep_out: KeepOut
     bands: tuple[WireBand, ...] = ()
     around_m: float = SITE_M
-
-    @property
-    def tower(self) -> DrawnSupport:
-        return self.supports[0].support
+    anchors: FloatArray = field(default_factory=lambda: np.zeros((1, 2)))
+    reach_m: float = 0.0
 
 
 def tower_site(
@@ -77,19 +81,48 @@ def tower_site(
     obstacles: Sequence[Obstacle] = (),
     lens_offset_m: float = 0.0,
     around_m: float = SITE_M,
-) -> TowerSite:
+) -> InspectionSite:
     """Return the site of the first of the supports, with what is within around_m.
 
     spans: places of the supports at both ends. The clearance is that of the highest voltage there, and lens_offset_m more: poses are the
     lens's, and the UAV is as far from them. obstacles: what else is on the map.
     """
     kept_m = max(clearance_m(own.support.voltage_v, rules) for own in supports) + lens_offset_m
-    stands = [Obstacle(_placed(own).triangles.reshape(-1, 3)[:, :2], 0.0, own.top_m) for own in supports]
-    wires = [_span(supports[start], supports[end]) for start, end in spans]
     own_ends = [(start, end) if start == 0 else (end, start) for start, end in spans if 0 in {start, end}]
     bands = [WireBand(_span(supports[start], supports[end]), _low_m(supports[start]), _low_m(supports[end])) for start, end in own_ends]
-    kept = keep_out([*stands, *obstacles], wires, kept_m, band, around_m)
-    return TowerSite(tuple(supports), _placed(supports[0]), kept_m, kept, tuple(bands), around_m)
+    kept = keep_out([*_columns(supports), *obstacles], _wires(supports, spans), kept_m, band, around_m)
+    return InspectionSite(_placed(supports[0]), supports[0].support.bearing_deg, kept_m, kept, tuple(bands), around_m)
+
+
+def bridge_site(
+    bridge: BridgeShape,
+    supports: Sequence[StandingSupport],
+    spans: Sequence[tuple[int, int]],
+    rules: ClearanceRules,
+    band: GroundBand,
+    obstacles: Sequence[Obstacle] = (),
+    lens_offset_m: float = 0.0,
+) -> InspectionSite:
+    """Return the site of a bridge with what is within SITE_M of it; see tower_site. Vehicles and masts stand on its deck.
+
+    The UAV is beside or above the bridge, never under it. The clearance is at least that of a railway's contact wire.
+    """
+    voltages_v = [CONTACT_WIRE_V, *(own.support.voltage_v for own in supports)]
+    kept_m = max(clearance_m(voltage_v, rules) for voltage_v in voltages_v) + lens_offset_m
+    top_m = max(bridge.deck_m + ON_DECK_M, bridge.top_m)
+    around_m = bridge.reach_m + SITE_M
+    columns = [*(Obstacle(corners, 0.0, top_m) for corners in bridge.pieces()), *_columns(supports), *obstacles]
+    kept = keep_out(columns, _wires(supports, spans), kept_m, band, around_m)
+    solid, anchors = bridge.solid(), bridge.anchors()
+    return InspectionSite(solid, bridge.bearing_deg, kept_m, kept, (), around_m, anchors, bridge.reach_m)
+
+
+def _columns(supports: Sequence[StandingSupport]) -> list[Obstacle]:
+    return [Obstacle(_placed(own).triangles.reshape(-1, 3)[:, :2], 0.0, own.top_m) for own in supports]
+
+
+def _wires(supports: Sequence[StandingSupport], spans: Sequence[tuple[int, int]]) -> list[Span]:
+    return [_span(supports[start], supports[end]) for start, end in spans]
 
 
 def _placed(own: StandingSupport) -> Solid:

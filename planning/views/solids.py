@@ -27,10 +27,15 @@ class Component(StrEnum):
     EARTH_WIRE_PEAK = "earth_wire_peak"
     GUY = "guy"
     WIRES = "wires"  # of one side of a span, up to its middle
+    DECK = "deck"
+    FACE = "face"  # one side of a bridge's deck
+    UNDERSIDE = "underside"
+    PIER = "pier"
+    ABUTMENT = "abutment"  # its side under the deck
 
 
 # Patches of these are larger, by this factor: there is much of them, and it looks the same.
-COARSER = {Component.BODY: 1.5, Component.GUY: 2.0, Component.WIRES: 10.0}
+COARSER = {Component.BODY: 1.5, Component.GUY: 2.0, Component.WIRES: 10.0, Component.DECK: 1.5, Component.UNDERSIDE: 1.5}
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +58,11 @@ class Solid:
 
     def moved(self, by: Vector) -> "Solid":
         return Solid(self.triangles + np.array(by), self.component, self.components)
+
+    @property
+    def area_m2(self) -> float:
+        corners = self.triangles
+        return float(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()) / 2.0
 
     @property
     def box(self) -> tuple[FloatArray, FloatArray]:
@@ -92,6 +102,11 @@ class SolidBuilder:
         self._components.append((component, number))
         return len(self._components) - 1
 
+    def faces(self, part: int, triangles: FloatArray) -> None:
+        """Triangles (t, 3, 3), anticlockwise as seen from outside."""
+        self._triangles.append(triangles)
+        self._component += [part] * len(triangles)
+
     def prism(self, part: int, bottom: Sequence[Vector], top: Sequence[Vector]) -> None:
         """Between two polygons of as many corners, both anticlockwise as seen from the top's side; with both end faces."""
         low, high = np.array(bottom, dtype=np.float64), np.array(top, dtype=np.float64)
@@ -102,7 +117,7 @@ class SolidBuilder:
             faces += [(low[corner], low[after], high[after]), (low[corner], high[after], high[corner])]
         for corner in range(1, count - 1):
             faces += [(high[0], high[corner], high[corner + 1]), (low[0], low[corner + 1], low[corner])]
-        self._add(part, np.array(faces))
+        self.faces(part, np.array(faces))
 
     def beam(self, part: int, start: Vector, end: Vector, start_m: tuple[float, float], end_m: tuple[float, float] | None = None) -> None:
         """A bar with rectangular ends, start_m and end_m wide and high [m]; it stands upright where it is vertical."""
@@ -130,10 +145,6 @@ class SolidBuilder:
             [(at[0] + x * low_half_m, at[1] + y * low_half_m, at[2] + low_m) for x, y in corners],
             [(at[0] + x * high_half_m, at[1] + y * high_half_m, at[2] + high_m) for x, y in corners],
         )
-
-    def _add(self, part: int, triangles: FloatArray) -> None:
-        self._triangles.append(triangles)
-        self._component += [part] * len(triangles)
 
     def solid(self) -> Solid:
         triangles = np.concatenate(self._triangles) if self._triangles else np.zeros((0, 3, 3))

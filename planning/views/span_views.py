@@ -16,7 +16,7 @@ from planning.views.detail_views import MAX_PHOTOS, TooManyPhotos
 from planning.views.ground_band import GroundBand
 from planning.views.keep_out import KeepOut
 from planning.views.proof import REACH_M
-from planning.views.site import TowerSite, WireBand
+from planning.views.site import InspectionSite, WireBand
 from planning.views.solids import Component, FloatArray, Solid
 from planning.views.visibility import FRAME_MARGIN, Poses, axes_of
 
@@ -66,7 +66,7 @@ class _Side:
         return float(heights_m[:, 0].min()), float(heights_m[:, 1].max())
 
 
-def sides_of(site: TowerSite) -> Iterator[_Side]:
+def sides_of(site: InspectionSite) -> Iterator[_Side]:
     """Yield left and right side of each span, as seen from the tower."""
     for band in site.bands:
         along = (np.array(band.span.end) - np.array(band.span.start)) / band.length_m
@@ -74,7 +74,7 @@ def sides_of(site: TowerSite) -> Iterator[_Side]:
             yield _Side(band, along, turn * np.array([along[1], -along[0]]), site.keep_out.band)
 
 
-def wires_solid(site: TowerSite) -> Solid:
+def wires_solid(site: InspectionSite) -> Solid:
     """Return the surfaces that stand for the wires: one of each side of each span, from the tower to the middle, facing outwards.
 
     It is no closed body, and hides nothing.
@@ -103,7 +103,7 @@ class SpanPhotos:
     focal_mm: float
 
 
-def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhotos:
+def span_photos(site: InspectionSite, camera: Camera, asked_gsd_m: float) -> SpanPhotos:
     """Return photos of both sides of each half span; none where no place is allowed. Raises TooManyPhotos."""
     focal_mm = _focal_mm(site, camera, asked_gsd_m)
     farthest_m = DISTANCE_MARGIN * min(standoff_m(camera, asked_gsd_m, focal_mm), REACH_M)
@@ -118,7 +118,7 @@ def span_photos(site: TowerSite, camera: Camera, asked_gsd_m: float) -> SpanPhot
     return SpanPhotos(Poses(values[:, :3], values[:, 3], values[:, 4]), values[:, 5], focal_mm)
 
 
-def _focal_mm(site: TowerSite, camera: Camera, asked_gsd_m: float) -> float:
+def _focal_mm(site: InspectionSite, camera: Camera, asked_gsd_m: float) -> float:
     """The shortest focal length that reaches the ground sample distance from outside of the clearance, else the longest."""
     needed_m = max((_outside_m(side, site.keep_out) for side in sides_of(site)), default=0.0) + LENS_MARGIN_M
     level_share = math.cos(math.radians(PITCHES_DEG[0]))

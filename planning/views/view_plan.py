@@ -1,6 +1,6 @@
-"""Photos of a tower with the flight through them and what they show: of every part, of the whole from four sides, or of its wires.
+"""Photos of an asset with the flight through them and what they show: of every part, of the whole from four sides, or of a tower's wires.
 
-An overview looks from between the directions of the line, obliquely from above where heights allow it.
+An overview looks from between the directions of the line or of the bridge, obliquely from above where heights allow it.
 """
 
 import math
@@ -11,23 +11,22 @@ import numpy as np
 from planning.views.camera import Camera, Lens
 from planning.views.coverage import ComponentCoverage, Coverage, by_component
 from planning.views.detail_views import detail_views
-from planning.views.keep_out import KeepOut
 from planning.views.limits import DetailRules
 from planning.views.proof import ProofSurface, flown_camera, proof_surface
-from planning.views.site import TowerSite
+from planning.views.site import InspectionSite
 from planning.views.solids import FloatArray
 from planning.views.span_views import span_photos, wires_solid
 from planning.views.view_flight import NO_PHOTO, ViewFlight, view_flight
 from planning.views.visibility import Poses, RayCaster, axes_of
 
-ENTRY_ABOVE_M = 2.0  # the keep-out over the tower
+ENTRY_ABOVE_M = 2.0  # the keep-out over the asset
 # Overviews.
 SIDES_DEG = (45.0, 135.0, 225.0, 315.0)  # where the UAV is, from the line's bearing
 TURNS_DEG = (0.0, 10.0, -10.0, 20.0, -20.0, 30.0, -30.0)  # by which it is moved to a side where something stands
 PITCHES_DEG = (-30.0, -20.0, -10.0, 0.0, 10.0)  # the first that heights allow
-FILLED = 0.9  # of the picture's width or height at most, by the tower
+FILLED = 0.9  # of the picture's width or height at most, by the asset
 STEP_M = 1.0  # farther away, until nothing stands there
-MAX_AWAY_M = 120.0  # from the tower: wires and supports are known up to SITE_M, and reach so much less far by clearance and swing
+UNKNOWN_M = 30.0  # less than a site's surroundings are known: so far wires and supports reach by clearance and swing
 NEARLY = 1.25  # as far as the nearest of all: as good
 
 
@@ -43,7 +42,7 @@ class ViewSpeeds:
 
 @dataclass(frozen=True, eq=False)
 class ViewPlan:
-    """Photos in the order flown. distance_m: along each optical axis to the tower. seconds: of the whole flight.
+    """Photos in the order flown. distance_m: along each optical axis to the asset. seconds: of the whole flight.
 
     bound: no choice shows as much with fewer photos, as in DetailViews.
     """
@@ -58,25 +57,25 @@ class ViewPlan:
     seconds: float
 
 
-def detail_plan(site: TowerSite, camera: Camera, rules: DetailRules, speeds: ViewSpeeds) -> ViewPlan:
+def detail_plan(site: InspectionSite, camera: Camera, rules: DetailRules, speeds: ViewSpeeds) -> ViewPlan:
     """Plan photos of every part. Raises TooManyPhotos, or NoWay where the flight over the wires would be too high.
 
     No photo looks steeper down than MIN_PITCH_DEG: the camera is aimed at a place, and one right under the UAV has no bearing.
     """
     camera = flown_camera(camera)
-    views = detail_views(site.solid, site.keep_out, camera, rules)
+    views = detail_views(site, camera, rules)
     surface = proof_surface(site, camera, rules.asked_gsd_m)
     return _plan(site, surface, views.poses, views.lens.focal_mm, views.bound, speeds)
 
 
-def overview_plan(site: TowerSite, camera: Camera, asked_gsd_m: float, speeds: ViewSpeeds) -> ViewPlan:
-    """Plan photos of the whole tower at the shortest focal length. What is coarser than asked_gsd_m counts as not shown. Raises NoWay."""
+def overview_plan(site: InspectionSite, camera: Camera, asked_gsd_m: float, speeds: ViewSpeeds) -> ViewPlan:
+    """Plan photos of the whole asset at the shortest focal length. What is coarser than asked_gsd_m counts as not shown. Raises NoWay."""
     camera = flown_camera(camera)
     poses = overview_poses(site, camera)
     return _plan(site, proof_surface(site, camera, asked_gsd_m), poses, camera.focal_lengths_mm[0], len(poses), speeds)
 
 
-def spans_plan(site: TowerSite, camera: Camera, asked_gsd_m: float, speeds: ViewSpeeds) -> ViewPlan:
+def spans_plan(site: InspectionSite, camera: Camera, asked_gsd_m: float, speeds: ViewSpeeds) -> ViewPlan:
     """Plan photos of the wires up to the middle of each span, from both sides. Raises TooManyPhotos or NoWay."""
     camera = flown_camera(camera)
     photos = span_photos(site, camera, asked_gsd_m)
@@ -84,17 +83,17 @@ def spans_plan(site: TowerSite, camera: Camera, asked_gsd_m: float, speeds: View
     return _plan(site, surface, photos.poses, photos.focal_mm, len(photos.poses), speeds, photos.distance_m)
 
 
-def overview_poses(site: TowerSite, camera: Camera) -> Poses:
-    """Return up to four poses, each of which has the whole tower in its picture at the shortest focal length.
+def overview_poses(site: InspectionSite, camera: Camera) -> Poses:
+    """Return up to four poses, each of which has the whole asset in its picture at the shortest focal length.
 
-    A side from which that is not possible within MAX_AWAY_M is left out.
+    A side from which that is not possible within the known surroundings is left out.
     """
-    found = [pose for side in SIDES_DEG if (pose := _pose(site, camera, site.tower.bearing_deg + side)) is not None]
+    found = [pose for side in SIDES_DEG if (pose := _pose(site, camera, site.bearing_deg + side)) is not None]
     values = np.array(found).reshape(-1, 5)
     return Poses(values[:, :3], values[:, 3], values[:, 4])
 
 
-def _pose(site: TowerSite, camera: Camera, azimuth_deg: float) -> tuple[float, ...] | None:
+def _pose(site: InspectionSite, camera: Camera, azimuth_deg: float) -> tuple[float, ...] | None:
     """Position [m], yaw and pitch [deg] of the photo from a side; None where there is none."""
     low, high = site.solid.box
     middle = (low + high) / 2.0
@@ -106,7 +105,7 @@ def _pose(site: TowerSite, camera: Camera, azimuth_deg: float) -> tuple[float, .
                 continue
             yaw_deg = (azimuth_deg + turn_deg + 180.0) % 360.0
             least_m, forward = _whole_m(beside, camera, yaw_deg, pitch_deg)
-            away_m = _clear_m(middle, forward, least_m, site.keep_out)
+            away_m = _clear_m(middle, forward, least_m, site)
             if away_m is None:
                 continue
             pose = (*(middle - forward * away_m).tolist(), yaw_deg, pitch_deg)
@@ -128,19 +127,21 @@ def _whole_m(beside: FloatArray, camera: Camera, yaw_deg: float, pitch_deg: floa
     return max(float(least_m.max()), float((camera.nearest_focus_m - nearer_m).max())), forward
 
 
-def _clear_m(middle: FloatArray, forward: FloatArray, least_m: float, keep_out: KeepOut) -> float | None:
-    """The least distance [m] from the middle, from which an axis looks, that is out of the keep-out; None within MAX_AWAY_M."""
+def _clear_m(middle: FloatArray, forward: FloatArray, least_m: float, site: InspectionSite) -> float | None:
+    """The least distance [m] from the middle, from which an axis looks, that is out of the keep-out; None within the surroundings."""
     level = math.hypot(float(forward[0]), float(forward[1]))
-    away_m = np.arange(least_m, MAX_AWAY_M / level, STEP_M)
-    clear = np.flatnonzero(~keep_out.holds(middle - away_m[:, None] * forward)) if len(away_m) else np.zeros(0)
+    away_m = np.arange(least_m, (site.around_m - UNKNOWN_M) / level, STEP_M)
+    clear = np.flatnonzero(~site.keep_out.holds(middle - away_m[:, None] * forward)) if len(away_m) else np.zeros(0)
     return float(away_m[int(clear[0])]) if len(clear) else None
 
 
 def _plan(
-    site: TowerSite, surface: ProofSurface, unordered: Poses, focal_mm: float, bound: int, speeds: ViewSpeeds,
+    site: InspectionSite, surface: ProofSurface, unordered: Poses, focal_mm: float, bound: int, speeds: ViewSpeeds,
     distance_m: FloatArray | None = None,
 ) -> ViewPlan:  # fmt: skip
-    entry = np.array([0.0, 0.0, site.keep_out.top_at(np.zeros(2)) + ENTRY_ABOVE_M])
+    origin = np.zeros(2)
+    least_m, _ = site.keep_out.band.limits_between(origin, origin)
+    entry = np.array([0.0, 0.0, max(site.keep_out.top_at(origin) + ENTRY_ABOVE_M, least_m)])
     flight = view_flight(unordered, site.keep_out, entry, entry)
     order = flight.photo[flight.photo != NO_PHOTO]
     poses = unordered.only(order)
@@ -156,7 +157,7 @@ def _plan(
 
 
 def _distance_m(poses: Poses, caster: RayCaster) -> FloatArray:
-    """To what each photo shows in its middle; as far as the tower's axis where that is none of it."""
+    """To what each photo shows in its middle; as far as the asset's middle where that is none of it."""
     _, _, forward = axes_of(poses.yaw_deg, poses.pitch_deg)
     away_m = caster.distance_m(poses.position, forward)
     beside_m = np.maximum(np.hypot(poses.position[:, 0], poses.position[:, 1]), 1.0)

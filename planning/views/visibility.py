@@ -70,11 +70,10 @@ def line_of_sight(positions: FloatArray, patches: Patches, caster: RayCaster, fa
     seen = np.zeros((len(positions), len(patches)), dtype=bool)
     least_cosine = np.cos(np.radians(MAX_ANGLE_DEG))
     start = patches.centre + OFF_SURFACE_M * patches.normal
-    facing = patches.normal @ positions.T - np.einsum("pi,pi->p", patches.normal, patches.centre)[:, None]
     for number, place in enumerate(positions):
         away = place - patches.centre
         distance_m = np.sqrt(np.einsum("pi,pi->p", away, away))
-        near = np.flatnonzero((facing[:, number] >= least_cosine * distance_m) & (distance_m <= farthest_m))
+        near = np.flatnonzero((np.einsum("pi,pi->p", away, patches.normal) >= least_cosine * distance_m) & (distance_m <= farthest_m))
         seen[number, near] = caster.is_free(start[near], np.broadcast_to(place, (len(near), 3)))
     return seen
 

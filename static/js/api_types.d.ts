@@ -818,6 +818,34 @@ export interface components {
             /** @description the same for people, in UTC */
             schedule_in_words: string;
         };
+        /** @description What a bridge is taken to look like. Heights count from the ground in its middle. */
+        BridgeModel: {
+            /** Format: double */
+            deck_height_m: number;
+            /**
+             * @description tag: its stated height; layer: the terrain at its ends, and 6.5 m for each layer below it
+             *
+             *     * `tag` - tag
+             *     * `layer` - layer
+             */
+            deck_source: components["schemas"]["DeckSourceEnum"];
+            /**
+             * Format: double
+             * @description as high as plans count it; flights pass above that
+             */
+            top_m: number;
+            /** Format: double */
+            length_m: number;
+            /** Format: double */
+            width_m: number;
+            /** @description assumed every 30 m: map data do not state where they are */
+            piers: number;
+            /**
+             * Format: double
+             * @description of its axis, 0 to 180
+             */
+            bearing_deg: number;
+        };
         BridgesOutput: {
             /** @description how many sections of the railway were looked at */
             sections: number;
@@ -1741,9 +1769,14 @@ export interface components {
          *     * `earth_wire_peak` - earth_wire_peak
          *     * `guy` - guy
          *     * `wires` - wires
+         *     * `deck` - deck
+         *     * `face` - face
+         *     * `underside` - underside
+         *     * `pier` - pier
+         *     * `abutment` - abutment
          * @enum {string}
          */
-        ComponentEnum: "foundation" | "plate" | "body" | "head" | "crossarm" | "string" | "clamp" | "earth_wire_peak" | "guy" | "wires";
+        ComponentEnum: "foundation" | "plate" | "body" | "head" | "crossarm" | "string" | "clamp" | "earth_wire_peak" | "guy" | "wires" | "deck" | "face" | "underside" | "pier" | "abutment";
         /** @description Wind and temperature during the flight; without wind it is calm. */
         ConditionsOutput: {
             wind: components["schemas"]["WindLayerOutput"][];
@@ -4717,7 +4750,7 @@ export interface components {
         NextActEnum: "connect" | "upload" | "wait" | "start";
         NotCounted: {
             /**
-             * @description failed: the camera reported a failure; position, height, attitude: unknown, of heights also their reference; tilted: more roll than 3°; far: from the tower
+             * @description failed: the camera reported a failure; position, height, attitude: unknown, of heights also their reference; tilted: more roll than 3°; far: from the asset
              *
              *     * `failed` - failed
              *     * `position` - position
@@ -5384,7 +5417,7 @@ export interface components {
             height_agl_m: number | null;
             /**
              * Format: double
-             * @description above the ground at the tower
+             * @description above the ground at the tower, or in the middle of the bridge
              */
             height_m: number;
             /**
@@ -8016,7 +8049,7 @@ export interface components {
             gsd_mm: number;
             /** Format: double */
             focal_length_mm: number | null;
-            /** @description by the planned photos; null where none are planned, or the tower is gone */
+            /** @description by the planned photos; null where none are planned, or the asset is gone */
             promised: components["schemas"]["Shown"] | null;
             /** @description one of each run */
             rehearsed: components["schemas"]["RehearsedCoverage"][];
@@ -9188,14 +9221,16 @@ export interface components {
              * @description least distance from wires and supports
              */
             clearance_m: number;
-            /** @description without, the ground counts as level with the tower's foot */
+            /** @description without, the ground counts as level with the foot of the asset */
             has_terrain: boolean;
-            model: components["schemas"]["TowerModel"];
+            /** @description of a tower */
+            model: components["schemas"]["TowerModel"] | null;
+            bridge: components["schemas"]["BridgeModel"] | null;
             /** @description in the order in which they are taken */
             photos: components["schemas"]["PlannedPhoto"][];
             /** @description no choice of fewer photos among the candidates shows enough; of overviews and wires the number of photos */
             photos_bound: number;
-            /** @description lon, lat, and metres above the ground at the tower; from above the tower and back to there */
+            /** @description lon, lat, and metres above the ground at the asset; from above the asset and back to there */
             route: number[][];
             /** Format: double */
             length_m: number;
@@ -9207,7 +9242,7 @@ export interface components {
         };
         ViewPlanInputRequest: {
             /**
-             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, at most 500 m, from both sides
+             * @description detail, which is usual: every part; overview: the whole of it in each of four photos; spans: the wires of a tower up to the middle of each span, at most 500 m, from both sides
              *
              *     * `detail` - detail
              *     * `overview` - overview
@@ -9228,7 +9263,7 @@ export interface components {
              * @default 4
              */
             min_height_m: number;
-            /** @description id of a power tower */
+            /** @description id of a power tower or a bridge */
             asset: number;
         };
         ViewPlanZone: {
@@ -9257,10 +9292,10 @@ export interface components {
             min_height_m: number;
             camera: components["schemas"]["Camera"];
         };
-        /** @description Photos of every part, of the whole from four sides, or of the wires: with which camera, and how fine. */
+        /** @description Photos of every part, of the whole from four sides, or of a tower's wires: with which camera, and how fine. */
         ViewsInputRequest: {
             /**
-             * @description detail, which is usual: every part; overview: the whole tower in each of four photos; spans: the wires up to the middle of each span, at most 500 m, from both sides
+             * @description detail, which is usual: every part; overview: the whole of it in each of four photos; spans: the wires of a tower up to the middle of each span, at most 500 m, from both sides
              *
              *     * `detail` - detail
              *     * `overview` - overview
@@ -9857,6 +9892,7 @@ export type BehaviourEnum = components['schemas']['BehaviourEnum'];
 export type BindsEnum = components['schemas']['BindsEnum'];
 export type BlankEnum = components['schemas']['BlankEnum'];
 export type BlockingZone = components['schemas']['BlockingZone'];
+export type BridgeModel = components['schemas']['BridgeModel'];
 export type BridgesOutput = components['schemas']['BridgesOutput'];
 export type BrowserSession = components['schemas']['BrowserSession'];
 export type BrowserSessionList = components['schemas']['BrowserSessionList'];

@@ -123,11 +123,11 @@ function details(feature) {
   ].filter((part) => part instanceof Node);
 }
 
-/** The way to the photos of a tower. @param {AssetDetailFeature} feature */
+/** The way to the photos of a tower or a bridge. @param {AssetDetailFeature} feature */
 const photosPart = ({ id, properties }) =>
-  properties.kind === "tower" &&
+  (properties.kind === "tower" || properties.kind === "bridge") &&
   !properties.vanished_at &&
-  viewPlanPart(id, records.map, {
+  viewPlanPart({ id, kind: properties.kind }, records.map, {
     words: t("Plan an inspection with these photos"),
     act: (views) => planInspection(id, properties.label, { kind: "photo", views }),
   });

@@ -62,7 +62,7 @@ export function isUsualTask(target) {
 }
 
 /** Whether photos of it can be planned. @param {Pick<PickedTarget, "asset" | "kind">} target */
-export const canHaveViews = ({ asset, kind }) => asset !== null && kind === "tower";
+export const canHaveViews = ({ asset, kind }) => asset !== null && (kind === "tower" || kind === "bridge");
 
 /**
  * The same targets with another task at some of them; without seconds or speed each keeps its own where the kind stays. A speed is that
@@ -101,7 +101,7 @@ export function withTask(selection, keys, { kind, hold_s = null, speed_mps }) {
  */
 export function withViews(selection, keys, views) {
   return changed(selection, keys, (target) => {
-    if (!canHaveViews(target)) return target;
+    if (!canHaveViews(target) || (views.pattern === "spans" && target.kind !== "tower")) return target;
     const now = taskOf(target);
     const hold_s = now.views ? now.hold_s : VIEWS_HOLD_S;
     return { ...target, task: { kind: "photo", hold_s, views: inOrder(views) }, sensor: views.camera.name };

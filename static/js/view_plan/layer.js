@@ -1,4 +1,4 @@
-/** The flight through the photos of a tower on the map: its line, and a cone per photo along its yaw. */
+/** The flight through the photos of an asset on the map: its line, and a cone per photo along its yaw. */
 
 import { boxAround } from "../domain/geodesy.js";
 import { answerClicks } from "../map/layers/clicks.js";

@@ -1,4 +1,4 @@
-/** The panel that plans photos of a tower: of every part, an overview or its wires, camera, GSD and least height. Each change plans anew. */
+/** The panel that plans photos of a tower or a bridge: of every part, an overview or a tower's wires, camera, GSD and least height. Each change plans anew. */
 
 import { ApiError, isAbort, post } from "../api.js";
 import { gsdText } from "../cameras/words.js";
@@ -15,6 +15,7 @@ import { resultOf } from "./result.js";
 /** @import { Camera, ViewPattern, ViewPlan } from "../api_types.d.ts" */
 /** @import { MapLibreMap } from "../map/types.d.ts" */
 
+/** @typedef {{ id: number, kind: string }} Photographed a tower or a bridge */
 /** @typedef {{ map: MapLibreMap, onRecolour: (act: () => void) => unknown }} Ground */
 /** @typedef {{ pattern?: ViewPattern, gsd_mm: number, min_height_m: number, camera: Camera }} Views what photos are planned by */
 /** @typedef {{ words: string, act: (views: Views) => unknown }} Take what can be done with planned photos */
@@ -30,14 +31,14 @@ const [MIN_GSD_MM, MAX_GSD_MM, GSD_STEP_MM] = [0.5, 10, 0.1];
 const [MIN_HEIGHT_M, MAX_HEIGHT_M] = [2, 60];
 const SETTLED_MS = 300;
 const KEPT = "kept"; // the value of a camera that a target was planned with and no type carries now
-/** @type {{ value: ViewPattern, words: string }[]} */
+/** @type {{ value: ViewPattern, words: string, kinds: readonly string[] }[]} */
 const PATTERNS = [
-  { value: "detail", words: t("Every part") },
-  { value: "overview", words: t("Overview from four sides") },
-  { value: "spans", words: t("Wires from both sides") },
+  { value: "detail", words: t("Every part"), kinds: ["tower", "bridge"] },
+  { value: "overview", words: t("Overview from four sides"), kinds: ["tower", "bridge"] },
+  { value: "spans", words: t("Wires from both sides"), kinds: ["tower"] },
 ];
 /**
- * What was asked last is asked first of the next tower; camera: "" until one was chosen or has shown anything.
+ * What was asked last is asked first of the next asset; camera: "" until one was chosen or has shown anything.
  *
  * @type {{ pattern: ViewPattern, camera: string, gsd_mm: number, min_height_m: number }}
  */
@@ -98,11 +99,7 @@ class ViewPlanPanel {
   #begun = null;
   /** @type {Awaited<ReturnType<typeof readCameras>>["choices"]} */
   #choices = new Map();
-  #pattern = h(
-    "select",
-    { class: "input", id: "view-plan-pattern" },
-    PATTERNS.map(({ value, words }) => h("option", { value, selected: value === asked.pattern }, words)),
-  );
+  #pattern = h("select", { class: "input", id: "view-plan-pattern" });
   #camera = h("select", { class: "input", id: "view-plan-camera" });
   #gsd = gsdField();
   #height = heightField();
@@ -140,12 +137,17 @@ class ViewPlanPanel {
   );
 
   /**
-   * @param {number} asset id of the tower
+   * @param {Photographed} asset
    * @param {{ layer: ReturnType<typeof createViewPlanLayer>, take: Take, closed: () => void }} on
    * @param {Pick<PanelOptions, "title" | "views">} options
    */
   constructor(asset, on, { title = t("Plan photos"), views = null }) {
-    this.#asset = asset;
+    this.#asset = asset.id;
+    const patterns = PATTERNS.filter(({ kinds }) => kinds.includes(asset.kind));
+    setChildren(
+      this.#pattern,
+      patterns.map(({ value, words }) => h("option", { value, selected: value === asked.pattern }, words)),
+    );
     this.#on = on;
     this.#begun = views;
     this.title.append(icon("camera", "small"), title);
@@ -316,7 +318,7 @@ let layer = null;
 /** @type {ViewPlanPanel | null} */
 let open = null;
 
-/** Close the panel, where one is open: the tower is no longer shown. */
+/** Close the panel, where one is open: the asset is no longer shown. */
 export function closeViewPlan() {
   open?.close();
 }
@@ -332,7 +334,7 @@ function layerOf({ map, onRecolour }) {
  * Opens the panel in a place, in place of what is there. One panel is open at a time.
  *
  * @param {HTMLElement} place
- * @param {number} asset id of a tower
+ * @param {Photographed} asset
  * @param {Ground} ground
  * @param {PanelOptions} options
  */
@@ -361,9 +363,9 @@ export function openViewPlan(place, asset, ground, { take, closed = () => {}, ..
 }
 
 /**
- * The button that opens the panel in the details of a tower.
+ * The button that opens the panel in the details of a tower or a bridge.
  *
- * @param {number} asset id of the tower
+ * @param {Photographed} asset
  * @param {Ground} ground
  * @param {Take} take
  */

@@ -1,4 +1,4 @@
-/** What photos prove of a mission's towers: promised by the plan, rehearsed, achieved; by kind of component, with what is missing. */
+/** What photos prove of a mission's towers and bridges: promised by the plan, rehearsed, achieved; by kind of component, with what is missing. */
 
 import { get } from "../api.js";
 import { gsdText } from "../cameras/words.js";
@@ -23,7 +23,7 @@ const NOT_COUNTED = {
   height: t("height unknown"),
   attitude: t("direction of the camera unknown"),
   tilted: t("camera tilted"),
-  far: t("too far from the tower"),
+  far: t("too far from the target"),
 };
 
 /**
@@ -72,7 +72,7 @@ export function proofsByKind(promised, proofs) {
 const area_m2 = (rows, kind, share) =>
   rows.filter(({ component }) => component === kind).reduce((sum, row) => sum + row.area_m2 * share(row), 0);
 
-/** Of what the plan can show of the whole tower, 0 to 1. @param {Shown} promised @param {Proof} proof */
+/** Of what the plan can show of the whole target, 0 to 1. @param {Shown} promised @param {Proof} proof */
 export const shownOf = (promised, proof) =>
   promised.coverage.reachable > 0 ? Math.min(1, proof.coverage.shown / promised.coverage.reachable) : 0;
 

@@ -4,7 +4,7 @@ import { focalText, gsdText } from "../cameras/words.js";
 import { h, icon, term } from "../dom.js";
 import { t, tn } from "../text.js";
 import { durationText, exactHeightText, lengthText, numberText } from "../units.js";
-import { byKind, COMPONENTS, modelText, nothingText, restText, shareText } from "./words.js";
+import { assumedText, byKind, COMPONENTS, nothingText, restText, shareText } from "./words.js";
 
 /** @import { ViewPlan } from "../api_types.d.ts" */
 
@@ -125,12 +125,8 @@ function photosList({ photos }, choose) {
  * @param {(number: number | null) => void} choose a photo, null: none
  */
 export function resultOf(plan, choose) {
-  const flat = t("No terrain data: the ground counts as level, and heights from the tower’s foot.");
-  const model = h(
-    "p",
-    { class: "caption" },
-    plan.has_terrain ? modelText(plan.model) : `${modelText(plan.model)} ${flat}`,
-  );
+  const flat = t("No terrain data: the ground counts as level.");
+  const model = h("p", { class: "caption" }, plan.has_terrain ? assumedText(plan) : `${assumedText(plan)} ${flat}`);
   if (!plan.photos.length)
     return [notice("advisory", t("Nothing can be shown."), nothingText(plan)), model, coverageTable(plan)];
   return [

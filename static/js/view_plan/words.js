@@ -1,10 +1,10 @@
 /** A plan of photos in words: coverage by kind of component, the model's assumptions, and why nothing can be shown. */
 
 import { gsdAt_mm, gsdText, standoff_m } from "../cameras/words.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { exactHeightText, percentText, voltageText } from "../units.js";
 
-/** @import { ComponentCoverage, TowerModel, ViewPlan } from "../api_types.d.ts" */
+/** @import { BridgeModel, ComponentCoverage, TowerModel, ViewPlan } from "../api_types.d.ts" */
 
 /** @typedef {NonNullable<ComponentCoverage["limit"]>} Limit */
 /**
@@ -32,11 +32,16 @@ export const COMPONENTS = {
   earth_wire_peak: t("Earth-wire peaks"),
   guy: t("Guys"),
   wires: t("Wires"),
+  deck: t("Deck"),
+  face: t("Side faces"),
+  underside: t("Underside"),
+  pier: t("Piers"),
+  abutment: t("Abutments"),
 };
 
 /** @type {Record<Limit, string>} */
 const LIMITS = {
-  hidden: t("hidden by the tower itself"),
+  hidden: t("hidden by other parts"),
   height: t("only from below the least height"),
   gimbal: t("outside the gimbal's range"),
   distance: t("too far from outside the clearance"),
@@ -70,6 +75,24 @@ export function modelText({ form, height_m, height_source: source, voltage_v, is
   return t("Model: {facts}.", { facts: facts.join(", ") });
 }
 
+/**
+ * "Model: deck 8 m above ground (estimated), 60 m × 12 m, 1 pier (assumed)." @param {BridgeModel} bridge
+ */
+export function bridgeText({ deck_height_m, deck_source: source, length_m, width_m, piers }) {
+  const height = exactHeightText(deck_height_m);
+  const facts = [
+    source === "tag"
+      ? t("deck {height} above ground", { height })
+      : t("deck {height} above ground (estimated)", { height }),
+    `${exactHeightText(length_m)} × ${exactHeightText(width_m)}`,
+    piers > 0 && tn(piers, "{count} pier (position assumed)", "{count} piers (positions assumed)"),
+  ];
+  return t("Model: {facts}.", { facts: facts.filter(Boolean).join(", ") });
+}
+
+/** What a tower or a bridge is taken to look like. @param {ViewPlan} plan */
+export const assumedText = ({ model, bridge }) => (bridge ? bridgeText(bridge) : model ? modelText(model) : "");
+
 /** The limit of most of the area that cannot be shown. @param {readonly ComponentCoverage[]} rows @returns {Limit | null} */
 function mainLimit(rows) {
   /** @type {Map<Limit, number>} */
@@ -97,7 +120,7 @@ export function byKind(rows) {
   });
 }
 
-/** "12 % hidden by the tower itself"; "" where all can be shown. @param {KindCoverage} row */
+/** "12 % hidden by other parts"; "" where all can be shown. @param {KindCoverage} row */
 export const restText = ({ unreachable, limit }) =>
   unreachable < NEGLIGIBLE ? "" : `${shareText(unreachable)}${limit ? ` ${LIMITS[limit]}` : ""}`;
 
@@ -107,7 +130,9 @@ export const shareText = (share) => percentText(Math.floor(share * 100 + 1e-9));
 /** Why a plan without photos shows nothing, and what to change. @param {ViewPlan} plan */
 export function nothingText({ pattern, camera, gsd_mm, clearance_m, coverage }) {
   if (pattern === "overview")
-    return t("The whole tower does not fit into a picture of this camera. Choose a wider lens.");
+    return t(
+      "The whole of it does not fit into a picture of this camera. Choose a wider lens, or photos of every part.",
+    );
   const clearance = exactHeightText(clearance_m);
   const distance_m = standoff_m(camera, gsd_mm);
   const focus_m = camera.nearest_focus_m ?? 0;
@@ -128,6 +153,6 @@ export function nothingText({ pattern, camera, gsd_mm, clearance_m, coverage }) 
     );
   if (pattern === "spans" && limit) return t("Most of the wires: {reason}.", { reason: LIMITS[limit] });
   return limit
-    ? t("Most of the tower: {reason}.", { reason: LIMITS[limit] })
+    ? t("Most of the surface: {reason}.", { reason: LIMITS[limit] })
     : t("Choose another camera or a coarser GSD.");
 }

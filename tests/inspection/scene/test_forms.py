@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from inspection.scene.bridges import LAYER_M, deck_amsl_m, layer_of
 from inspection.scene.forms import Form, Layout, form_of, is_anchor, layout_of
 from inspection.scene.overhead import CATENARY_M, sag_m
 from inspection.scene.supports import LineFacts, arms_of, has_earth_wire, likely_height_m, phases_of
-from inspection.selectors.scene import LAYER_M, deck_amsl_m, layer_of
 
 HEIGHTS_M = st.floats(3.0, 380.0)
 VOLTAGES_V = st.one_of(st.none(), st.integers(400, 1_200_000))

@@ -1,13 +1,15 @@
-"""Photos of a tower over the API: cameras of types and of the catalogue, plans, and what is wrong with requests."""
+"""Photos of a tower or a bridge over the API: cameras of types and of the catalogue, plans, and what is wrong with requests."""
 
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from django.contrib.gis.geos import MultiPolygon, Polygon
 from django.test import Client
 
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.models import Asset
 from inspection.services import import_terrain
 from planning.views.catalogue import catalogue
 from tests.accounts.users import a_user, client_of
@@ -187,8 +189,63 @@ def test_what_is_wrong_with_a_request_is_told_by_field(client: Client, body: dic
     assert field in response.json()["error"]["details"]
 
 
-def test_only_towers_of_lines_are_planned(client: Client) -> None:
+def overpass(length_m: float, width_m: float, **facts: Any) -> Asset:
+    """A bridge that leads east."""
+    frame = LocalFrame.around(10.05, 56.05)
+    corners = (
+        np.array([[-length_m, -width_m], [length_m, -width_m], [length_m, width_m], [-length_m, width_m], [-length_m, -width_m]]) / 2.0
+    )
+    outline = MultiPolygon(Polygon(frame.to_degrees(corners).tolist()), srid=4326)
+    own = ground.bridge((10.05, 56.05), **facts)
+    own.geometry = outline
+    own.save()
+    return own
+
+
+@pytest.mark.parametrize(
+    ("facts", "deck_height_m", "deck_source", "top_m"),
+    [({}, 6.5, "layer", 34.0), ({"tags": {"layer": "2"}}, 13.0, "layer", 34.0), ({"height_m": 9.0}, 9.0, "tag", 13.0)],
+)
+def test_photos_of_a_bridge_keep_clear_of_it_and_show_it(
+    client: Client, facts: dict[str, Any], deck_height_m: float, deck_source: str, top_m: float
+) -> None:
+    own = overpass(40.0, 10.0, **facts)
+    plan = planned(client, {"asset": own.pk, "camera_key": ZOOM, "gsd_mm": 3})
+    assert plan["model"] is None
+    assert plan["bridge"] == pytest.approx({
+        "deck_height_m": deck_height_m, "deck_source": deck_source, "top_m": top_m, "length_m": 40.0, "width_m": 10.0, "piers": 0,
+        "bearing_deg": 90.0,
+    }, rel=1e-3)  # fmt: skip
+    frame = LocalFrame.around(10.05, 56.05)
+    route = np.array(plan["route"])
+    beside_m = np.abs(frame.to_metres(route[:, :2])) - (20.0, 5.0)
+    is_beside = np.linalg.norm(beside_m.clip(min=0.0), axis=1) >= plan["clearance_m"] - 0.05
+    assert (is_beside | (route[:, 2] >= max(top_m, deck_height_m + 12.0) + plan["clearance_m"] - 0.05)).all()
+    rows = {(row["component"], row["number"]): row for row in plan["coverage"]["components"]}
+    assert set(rows) == {("deck", 0), ("underside", 0), ("face", 0), ("face", 1), ("abutment", 0), ("abutment", 1)}
+    assert min(rows[kind]["shown"] for kind in (("deck", 0), ("face", 0), ("face", 1))) > 0.9
+    assert plan["coverage"]["shown_of_reachable"] > 0.95
+
+
+def test_an_overview_of_a_bridge_has_four_photos(client: Client) -> None:
+    plan = planned(client, {"asset": overpass(40.0, 10.0).pk, "camera_key": "dji-m30t-wide", "pattern": "overview"})
+    assert len(plan["photos"]) == 4
+
+
+def test_a_bridge_with_pylons_of_unknown_height_is_refused(client: Client) -> None:
+    own = overpass(40.0, 10.0, tags={"bridge:structure": "cable-stayed"})
+    body = {"asset": own.pk, "camera_key": ZOOM, "gsd_mm": 3}
+    refused = post(client, "view-plans", body)
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, "bridge_height_unknown")
+    own.height_m = 50.0
+    own.save()
+    assert planned(client, body)["bridge"]["top_m"] >= 50.0
+
+
+def test_only_towers_of_lines_and_bridges_are_planned(client: Client) -> None:
     here = world()
-    assert post(client, "view-plans", {"asset": here.bridge.pk, "camera_key": ZOOM, "gsd_mm": 2}).json()["error"]["code"] == "not_a_tower"
+    for asset, pattern in ((here.railway, "detail"), (here.line, "detail"), (here.bridge, "spans")):
+        answer = post(client, "view-plans", {"asset": asset.pk, "camera_key": ZOOM, "gsd_mm": 2, "pattern": pattern})
+        assert answer.json()["error"]["code"] == "not_a_tower"
     assert post(client, "view-plans", {"asset": 10**9, "camera_key": ZOOM, "gsd_mm": 2}).status_code == 404
     assert post(Client(), "view-plans", {"asset": here.bridge.pk, "camera_key": ZOOM, "gsd_mm": 2}).status_code in {401, 403}

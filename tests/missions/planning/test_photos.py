@@ -198,11 +198,25 @@ def test_a_zone_beside_the_tower_that_only_the_photos_would_meet(here: World, cl
     assert unassigned(mission) == "inside_zone: photos_meet_zone"
 
 
-def test_a_gsd_that_no_lens_reaches_and_a_bridge_are_named(here: World, client: Client) -> None:
+def test_a_gsd_that_no_lens_reaches_and_wires_of_a_bridge_are_named(here: World, client: Client) -> None:
     uav = tern()
     fine = made(client, body(photos_of(here.towers[2], gsd_mm=0.1, camera_key="dji-p1-35"), uav=uav))
     assert unassigned(fine) == "no_photos: photos_none_possible"
-    assert unassigned(made(client, body(photos_of(here.bridge), uav=uav))) == "no_photos: photos_not_a_tower"
+    assert unassigned(made(client, body(photos_of(here.bridge, pattern="spans"), uav=uav))) == "no_photos: photos_not_a_tower"
+
+
+def test_a_bridge_and_a_tower_are_photographed_in_one_route(here: World, client: Client) -> None:
+    """The bridge is 125 m wide and 222 m long."""
+    wide = {"gsd_mm": 20, "camera_key": "dji-m30t-zoom"}
+    mission = made(client, body(photos_of(here.bridge, **wide), photos_of(here.towers[2], **wide)))
+    (route,) = mission["plan"]["routes"]
+    by_target = {place: [row["task"]["view"] for row in route["waypoints"] if row["target"] == place and (row["task"] or {}).get("view")]
+                 for place in (0, 1)}  # fmt: skip
+    assert min(map(len, by_target.values())) >= 3
+    coverage = client.get(f"/api/v1/missions/{mission['id']}/coverage").json()["results"]
+    assert [row["promised"]["photos"] for row in coverage] == [len(views) for views in by_target.values()]
+    shown = {row["component"]: row["shown"] for row in coverage[0]["promised"]["coverage"]["components"]}
+    assert min(shown[kind] for kind in ("deck", "face")) > 0.9
 
 
 @pytest.mark.parametrize(

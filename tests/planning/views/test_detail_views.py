@@ -39,7 +39,7 @@ each_case = pytest.mark.parametrize(
 @cache
 def planned(tower: str, camera: Camera, gsd_m: float) -> DetailViews:
     stands = standing(TOWERS[tower])
-    return detail_views(stands.solid, stands.keep_out, camera, DetailRules(gsd_m))
+    return detail_views(stands.site, camera, DetailRules(gsd_m))
 
 
 @cache
@@ -101,7 +101,7 @@ def test_over_hills_no_part_of_a_flight_is_too_low_or_too_high(bearing_deg: floa
         return knoll_m(35.0, 20.0) + knoll_m(-40.0, -10.0) + 0.2 * at[:, 1]
 
     stands = standing(TOWERS["lattice, 110 kV, triangle"], bearing_deg, lambda at: hills_m(at) - hills_m(np.zeros((1, 2))))
-    views = detail_views(stands.solid, stands.keep_out, ZOOM, DetailRules(0.002))
+    views = detail_views(stands.site, ZOOM, DetailRules(0.002))
     flight = view_flight(views.poses, stands.keep_out, stands.entry, stands.entry)
     places = flown_places(flight, 0.3)
     over_m = places[:, 2] - hills_m(places[:, :2]) + hills_m(np.zeros((1, 2)))
@@ -124,10 +124,10 @@ def test_hostile_cameras_are_refused_at_once(monkeypatch: pytest.MonkeyPatch) ->
     stands = standing(TOWERS["lattice, 380 kV, barrel"])
     tiny = Camera("tiny", 6.4, 4.8, 320, 240, (400.0,))
     with pytest.raises(TooManyPhotos):
-        detail_views(stands.solid, stands.keep_out, tiny, DetailRules(0.002))
+        detail_views(stands.site, tiny, DetailRules(0.002))
     narrow = Camera("narrow", 6.4, 4.8, 8000, 6000, (500.0,))
     monkeypatch.setattr("planning.views.detail_views.MAX_PHOTOS", 1_000)
-    assert detail_views(stands.solid, stands.keep_out, narrow, DetailRules(0.1)).candidates <= MAX_CANDIDATES + 1_000
+    assert detail_views(stands.site, narrow, DetailRules(0.1)).candidates <= MAX_CANDIDATES + 1_000
 
 
 @pytest.mark.long
@@ -136,7 +136,7 @@ def test_more_photos_than_the_limit_are_refused(monkeypatch: pytest.MonkeyPatch)
     needed, stands = len(planned(tower, camera, gsd_m).poses), standing(TOWERS[tower])
     monkeypatch.setattr("planning.views.detail_views.MAX_PHOTOS", needed - 1)
     with pytest.raises(TooManyPhotos):
-        detail_views(stands.solid, stands.keep_out, camera, DetailRules(gsd_m))
+        detail_views(stands.site, camera, DetailRules(gsd_m))
 
 
 @pytest.mark.long
@@ -199,7 +199,7 @@ def test_what_cannot_be_shown_has_its_reason() -> None:
 @pytest.mark.long
 def test_a_camera_that_shows_nothing_gets_no_photo_and_no_error() -> None:
     stands = standing(TOWERS["lattice, 765 kV, delta"])
-    views = detail_views(stands.solid, stands.keep_out, WIDE, DetailRules(0.003))
+    views = detail_views(stands.site, WIDE, DetailRules(0.003))
     assert len(views.poses) == 0
     assert views.bound == 0
 

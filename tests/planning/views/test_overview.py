@@ -10,21 +10,22 @@ from hypothesis import strategies as st
 from planning.views.camera import Camera, Gimbal
 from planning.views.ground_band import GroundBand
 from planning.views.proof import flown_camera
+from planning.views.site import InspectionSite
 from planning.views.view_flight import NO_PHOTO
 from planning.views.view_plan import ViewSpeeds, overview_plan, overview_poses
 from planning.views.visibility import axes_of
 from tests.cases import long
 from tests.planning.views.geometry_oracle import flown_places, to_triangles_m
-from tests.planning.views.towers import FULL_FRAME, MAX_HEIGHT_M, MIN_HEIGHT_M, TOWERS, WIDE, ZOOM, StandingTower, standing
+from tests.planning.views.towers import FULL_FRAME, MAX_HEIGHT_M, MIN_HEIGHT_M, TOWERS, WIDE, ZOOM, standing
 
 QUICK = ("lattice, 380 kV, danube", "tubular, 110 kV, alternating", "portal, 110 kV", "wooden pole, 20 kV")
 CAMERAS = {"zoom": ZOOM, "full frame": FULL_FRAME, "wide": WIDE}
 
 
-def shares_of_frame(stands: StandingTower, camera: Camera) -> np.ndarray:
-    """How much of half the picture's width and height the tower takes in each photo, at the corner farthest from its middle; (n, 2)."""
-    poses = overview_poses(stands.site, flown_camera(camera))
-    points = stands.solid.triangles.reshape(-1, 3)
+def shares_of_frame(site: InspectionSite, camera: Camera) -> np.ndarray:
+    """How much of half the picture's width and height the asset takes in each photo, at the corner farthest from its middle; (n, 2)."""
+    poses = overview_poses(site, flown_camera(camera))
+    points = site.solid.triangles.reshape(-1, 3)
     found = []
     for number in range(len(poses)):
         right, up, forward = (own[0] for own in axes_of(poses.yaw_deg[number : number + 1], poses.pitch_deg[number : number + 1]))
@@ -40,7 +41,7 @@ def shares_of_frame(stands: StandingTower, camera: Camera) -> np.ndarray:
 @pytest.mark.parametrize("tower", TOWERS)
 def test_each_photo_has_the_whole_tower_and_hardly_more_than_heights_ask_for(tower: str, camera: Camera) -> None:
     stands = standing(TOWERS[tower])
-    shares = shares_of_frame(stands, camera)
+    shares = shares_of_frame(stands.site, camera)
     assert len(shares) in (0, 4)
     assert (shares <= 0.901).all()
     if camera is WIDE:
@@ -52,7 +53,7 @@ def test_each_photo_has_the_whole_tower_and_hardly_more_than_heights_ask_for(tow
 def test_a_side_of_each_corner_between_the_directions_of_the_line(bearing_deg: float, tower: str) -> None:
     stands = standing(TOWERS[tower], bearing_deg)
     poses = overview_poses(stands.site, flown_camera(WIDE))
-    from_line_deg = (np.degrees(np.arctan2(poses.position[:, 0], poses.position[:, 1])) - stands.site.tower.bearing_deg) % 360.0
+    from_line_deg = (np.degrees(np.arctan2(poses.position[:, 0], poses.position[:, 1])) - stands.site.bearing_deg) % 360.0
     assert [int(own // 90.0) for own in from_line_deg] == [0, 1, 2, 3]
     assert np.abs(from_line_deg % 90.0 - 45.0).max() <= 31.0
 

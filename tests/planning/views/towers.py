@@ -10,7 +10,7 @@ from inspection.scene.supports import DrawnSupport, arms_of
 from planning.views.camera import Camera, Gimbal
 from planning.views.ground_band import GroundBand
 from planning.views.keep_out import SITE_M, ClearanceRules, KeepOut
-from planning.views.site import StandingSupport, TowerSite, tower_site
+from planning.views.site import InspectionSite, StandingSupport, tower_site
 from planning.views.solids import FloatArray, Solid
 
 SPAN_M = 300.0
@@ -26,7 +26,7 @@ class StandingTower:
     """A tower among its neighbours, and the site that is planned on."""
 
     support: DrawnSupport
-    site: TowerSite
+    site: InspectionSite
     supports: tuple[StandingSupport, ...]
 
     @property

@@ -230,11 +230,11 @@ function viewPlanning(list, actions, { ground }) {
   const place = h("div", {});
   list.before(place);
   return (targets) => {
-    const [{ asset, label, task }] = targets;
+    const [{ asset, kind, label, task }] = targets;
     if (asset === null) return;
     const keys = targets.map(({ key }) => key);
     const opener = document.activeElement;
-    openViewPlan(place, asset, ground, {
+    openViewPlan(place, { id: asset, kind }, ground, {
       title: t("Photos of {name}", { name: label }),
       views: task?.views ?? null,
       take: {
