@@ -8,7 +8,7 @@ are a third as long as the planner's; what can be shown is looked for from each 
 is that of places every 0.3 m (0.1 s at 3 m/s) to all triangles and to wires with and without sag, still and swung with their strings, by
 plain formulas.
 The bound is that of the linear relaxation over the candidates that were weighed. --write puts the tables into docs/performance.md.
-Exits with 1 where less than 95 % of what can be shown is shown, or a flight comes nearer than the clearance.
+Exits with 1 where less than 95 % (of bridges 90 %) of what can be shown is shown, or a flight comes nearer than the clearance.
 """
 
 import argparse
@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.report import machine, table, write_section
+from config.compiled.compiled_core import use_compiled_directory
 from planning.views.catalogue import catalogue
 from planning.views.coverage import coverage_of
 from planning.views.detail_views import DetailViews, detail_views
@@ -38,7 +39,7 @@ from tests.planning.views.towers import TOWERS, StandingTower, standing
 TITLES = {"towers": "Photos of towers", "bridges": "Photos of bridges"}
 CAMERAS = ("dji-m30t-zoom", "dji-p1-50", "dji-m4e-tele")
 GSDS_M = (0.002, 0.004)
-SHARE = 0.95
+SHARES = {"towers": 0.95, "bridges": 0.9}  # of long bridges a very long lens leaves out more
 PATCH_M, STEP_M = 0.8, 0.3
 ABOVE_M = 2.0  # the keep-out, where flights begin
 Nearest = Callable[[np.ndarray], float]
@@ -99,6 +100,7 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=len(TOWERS), help="so many of each kind")
     parser.add_argument("--write", action="store_true")
     arguments = parser.parse_args()
+    use_compiled_directory()
     warm_up()
     return max(run(kind, arguments.first, writes=arguments.write) for kind in arguments.kind or TITLES)
 
@@ -125,7 +127,7 @@ def run(kind: str, first: int, *, writes: bool) -> int:
     if writes:
         told = f"`python -m benchmarks.planning.view_plans`: {len(every)} cases. {machine('numpy', 'scipy', 'embreex')}"
         write_section(TITLES[kind], f"{told}\n\n{table(heads, rows)}")
-    return int(any(own.share < SHARE or own.spare_m < 0.0 for own in every if own.photos))
+    return int(any(own.share < SHARES[kind] or own.spare_m < 0.0 for own in every if own.photos))
 
 
 def summary(cases: list[Measured]) -> list[str]:

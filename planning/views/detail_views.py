@@ -15,8 +15,8 @@ from planning.views.keep_out import KeepOut
 from planning.views.limits import DetailRules, Limits, limits_of
 from planning.views.proof import REACH_M, reach_m
 from planning.views.site import InspectionSite
-from planning.views.solids import Component, FloatArray, Patches, patches_of
-from planning.views.visibility import Poses, RayCaster, aim_at, in_frame, line_of_sight
+from planning.views.solids import Component, FloatArray, IntArray, Patches, patches_of
+from planning.views.visibility import FRAME_MARGIN, Poses, RayCaster, aim_at, in_frame, line_of_sight, photos_show
 
 BoolArray = NDArray[np.bool_]
 
@@ -93,9 +93,12 @@ def detail_views(site: InspectionSite, camera: Camera, rules: DetailRules) -> De
         return DetailViews(photos, lens, patches, shows, limits, 0)
     kind = np.array([list(Component).index(kind) for kind, _ in solid.components])[patches.component]
     cover = fewest_photos(shows, patches.area_m2, kind, rules.share)
-    if len(cover.chosen) > MAX_PHOTOS:
+    chosen = cover.chosen
+    if len(site.anchors) > 1:
+        chosen = np.union1d(chosen, _between_patches(photos, chosen, patches_of(solid, MIN_PATCH_M), caster, camera, lens, rules.share))
+    if len(chosen) > MAX_PHOTOS:
         raise TooManyPhotos
-    return DetailViews(photos.only(cover.chosen), lens, patches, shows[cover.chosen], limits, cover.bound, len(photos))
+    return DetailViews(photos.only(chosen), lens, patches, shows[chosen], limits, cover.bound, len(photos))
 
 
 def candidate_positions(site: InspectionSite, farthest_m: float) -> FloatArray:
@@ -141,6 +144,21 @@ def _around(
                 found.append((anchor[0] + out_m * math.sin(turn), anchor[1] + out_m * math.cos(turn), level_m))
     positions = np.array(found).reshape(-1, 3)
     return positions[~keep_out.holds(positions)] if len(positions) else positions
+
+
+def _between_patches(
+    photos: Poses, chosen: IntArray, fine: Patches, caster: RayCaster, camera: Camera, lens: Lens, share: float
+) -> IntArray:  # fmt: skip
+    """Return further photos for what the chosen ones leave out of finer patches, of which photos show less than of large ones."""
+    left = np.flatnonzero(~photos_show(photos.only(chosen), fine, caster, camera, lens, FRAME_MARGIN).any(axis=0))
+    rest = fine.only(left)
+    shows = photos_show(photos, rest, caster, camera, lens, FRAME_MARGIN)
+    can_m2 = float(rest.area_m2[shows.any(axis=0)].sum())
+    shown_m2 = float(fine.area_m2.sum() - rest.area_m2.sum())
+    needed_m2 = share * (shown_m2 + can_m2) - shown_m2
+    if needed_m2 <= 0.0 or can_m2 == 0.0:
+        return np.zeros(0, dtype=np.int64)
+    return fewest_photos(shows, rest.area_m2, np.zeros(len(rest), dtype=np.int64), needed_m2 / can_m2).chosen
 
 
 def _further_positions(limits: Limits, missing: BoolArray, cube_m: float) -> FloatArray:

@@ -87,6 +87,9 @@ class Patches:
     def __len__(self) -> int:
         return len(self.centre)
 
+    def only(self, rows: IntArray) -> "Patches":
+        return Patches(self.corners[rows], self.centre[rows], self.normal[rows], self.area_m2[rows], self.component[rows])
+
 
 class SolidBuilder:
     """Collects the parts of one asset."""
