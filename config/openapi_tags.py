@@ -12,7 +12,7 @@ HEADINGS: dict[str, dict[str, TitleAndDescription]] = {
         "selections": ("Saved selections", "Lists of targets that an organisation keeps under a name."),
         "reachability": ("Reachability", "Which assets the chosen UAVs can inspect, and why not the others."),
         "leg-checks": ("Leg checks", "Check single legs against no-fly zones."),
-        "view-plans": ("Photo plans", "Plan photos of a tower or its wires at a ground sample distance."),
+        "view-plans": ("Photo plans", "Plan photos of a tower, its wires or a bridge at a ground sample distance."),
         "camera-catalogue": ("Camera catalogue", "Inspection cameras with their figures and sources."),
     },
     "Flying": {

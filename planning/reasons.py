@@ -51,7 +51,11 @@ SENTENCES = register_sentences(
         "tied_to_unable": gettext_noop("It is tied to %(uav)s, which cannot fly to it."),
         "tied_to_full": gettext_noop("It is tied to %(uav)s, which has as many targets as it may have."),
         "photos_meet_zone": gettext_noop("Its photos would be taken inside %(zone)s, or too near to it."),
-        "photos_bridge_height": gettext_noop("The height of this bridge's pylons or arches is not known. State the height of the bridge."),
+        "photos_bridge_height_unknown": gettext_noop(
+            "The height of this bridge's pylons or arches is not known. State the height of the bridge."
+        ),
+        "photos_bridge_outline": gettext_noop("The outline of this bridge is not valid, or has too many corners. Edit the bridge."),
+        "photos_bridge_too_long": gettext_noop("Photos are planned of bridges up to 600 m long."),
         "photos_ground_unknown": gettext_noop("Photos near wires need terrain data under the whole route. Upload terrain that covers it."),
         "photos_need_terrain": gettext_noop("Photos need terrain data around the tower or bridge. Upload terrain that covers it."),
         "photos_not_a_tower": gettext_noop(
@@ -63,7 +67,7 @@ SENTENCES = register_sentences(
         "photos_none_possible": gettext_noop(
             "At this ground sample distance the camera can show nothing of it from outside the clearance."
         ),
-        "photos_no_way": gettext_noop("No flight keeps clear of wires, ground and the greatest height there."),
+        "photos_no_way": gettext_noop("No flight keeps clear of wires, structures, ground and the greatest height there."),
         "no_uav_with_sensor": gettext_noop("No UAV of the plan has the sensor %(sensor)s."),
         "no_flying_uav_with_sensor": gettext_noop("No UAV that can take off has the sensor %(sensor)s."),
         "no_uav_allowed": gettext_noop("No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to."),

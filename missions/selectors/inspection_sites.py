@@ -1,6 +1,5 @@
 """A tower or a bridge with wires, neighbours and terrain around it, for the planning of photos."""
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -33,15 +32,27 @@ GROUND_BEYOND_M = 30.0  # of the same: the ground
 WIRES_BESIDE_M = 15.0  # of lines without drawn spans: from their axis to the outermost wire, swing included
 TRACK_BESIDE_M = 6.0  # of railways: half of their width with masts
 MIN_PART_M2 = 1.0  # of a bridge's outline: smaller parts are slips of the mapper
-TALL_STRUCTURES = {"arch", "cable-stayed", "simple-suspension", "suspension"}  # values of bridge:structure
+TALL_STRUCTURES = {  # values of tags of bridges with pylons, arches or a lift above their deck
+    "bridge": {"cable-stayed", "movable", "suspension"},
+    "bridge:movable": {"bascule", "drawbridge", "lift"},
+    "bridge:structure": {"arch", "cable-stayed", "simple-suspension", "suspension"},
+    "bridge:support": {"pylon"},
+}
+MAX_BRIDGE_REACH_M = 300.0  # from its middle
+OUTLINE_ERROR_M, MAX_CORNERS = 0.3, 400  # by which the outline of a model is simplified, and its corners then
+BESIDE_M, MAX_BESIDE = 40.0, 20  # of bridges that may hide parts of another
 OTHER_TOP_M: dict[str, float] = {
     AssetKind.RAILWAY: UNTAGGED_HEIGHT_M[NodeKind.RAILWAY],
     AssetKind.BRIDGE: UNTAGGED_HEIGHT_M[NodeKind.BRIDGE],
 }
 
 
-class BridgeHeightUnknown(Exception):
-    """The bridge has pylons or arches above its deck, and the map data do not state how high they are."""
+class UnfitBridge(Exception):
+    """A bridge of which no photos are planned; code: of the reason, without "photos_"."""
+
+    def __init__(self, code: str) -> None:
+        super().__init__(code)
+        self.code = code
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +75,7 @@ class SiteOnMap:
 def site_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
     """Return the surroundings of a tower or a bridge, as far as such photos may be taken.
 
-    None where it is neither, or no support of the network, or has no such photos. Raises BridgeHeightUnknown. The least height of the
+    None where it is neither, or no support of the network, or has no such photos. Raises UnfitBridge. The least height of the
     photos and the greatest of the flight rules are kept everywhere.
     """
     if asset.kind != AssetKind.BRIDGE:
@@ -94,29 +105,83 @@ def _tower_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
 
 
 def _bridge_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
-    tags = asset.tags or (asset.parts[0]["tags"] if asset.parts else {})
-    if asset.height_m is None and tags.get("bridge:structure") in TALL_STRUCTURES:
-        raise BridgeHeightUnknown
-    ground = _Ground.around(*asset.centre.coords)
-    shape = shapely.force_2d(shapely.from_wkb(bytes(asset.geometry.wkb)))
-    outline = shapely.transform(shape, ground.frame.to_metres)
-    parts = tuple(shapely.orient_polygons(part) for part in shapely.get_parts(outline) if shapely.area(part) >= MIN_PART_M2)
-    if asset.vanished_at is not None or not parts:
+    if asset.vanished_at is not None:
         return None
-    around_m = float(np.abs(shapely.get_coordinates(outline)).max()) * math.sqrt(2.0) + SITE_M
-    box = _box(asset, around_m)
+    if asset.height_m is None and _is_tall(asset):
+        raise UnfitBridge("bridge_height_unknown")
+    ground = _Ground.around(*asset.centre.coords)
+    outline = _outline(asset, ground.frame)
+    parts = _parts(outline)
+    if not parts:
+        raise UnfitBridge("bridge_outline")
+    reach_m = float(np.linalg.norm(shapely.get_coordinates(outline), axis=1).max())
+    if reach_m > MAX_BRIDGE_REACH_M:
+        raise UnfitBridge("bridge_too_long")
+    box = _box(asset, reach_m + SITE_M)
     found = overhead_in(box)
-    band = ground.band(views, around_m)
-    corners = np.concatenate([shapely.get_coordinates(part.exterior) for part in parts])
-    edge_m, feet_m = ground.heights_m(corners), ground.heights_m(ground.frame.to_metres(found.position))
-    deck_m, deck_source = deck_of(np.nan_to_num(edge_m), asset.height_m, tags)
-    counted_m = OTHER_TOP_M[AssetKind.BRIDGE] if asset.height_m is None else asset.height_m
-    model = BridgeShape(parts, deck_m, band.highest_low_m(corners) + counted_m, lambda places: np.nan_to_num(ground.heights_m(places)))
+    band = ground.band(views, reach_m + SITE_M)
+    model, deck_source = _bridge(asset, parts, ground, band)
+    feet_m = ground.heights_m(ground.frame.to_metres(found.position))
     supports, spans = _standing(found, ground.frame, np.nan_to_num(feet_m))
-    others = list(_others(asset, box, ground.frame, band))
-    site = bridge_site(model, supports, spans, settings.CLEARANCE_RULES, band, others, _lens_offset_m(views))
-    base_m = ground.known_base_m(np.concatenate([edge_m, feet_m]))
-    return SiteOnMap(site, ground.frame, base_m, ground.heights_m, model, deck_source)
+    slips = [
+        Obstacle(shapely.get_coordinates(part), 0.0, model.top_m) for part in shapely.get_parts(outline) if shapely.area(part) < MIN_PART_M2
+    ]
+    others = [*slips, *_others(asset, box, ground.frame, band)]
+    rules, beside = settings.CLEARANCE_RULES, list(_bridges_beside(asset, ground, band))
+    site = bridge_site(model, supports, spans, rules, band, others, _lens_offset_m(views), beside)
+    edge_m = ground.heights_m(shapely.get_coordinates(outline))
+    return SiteOnMap(site, ground.frame, ground.known_base_m(np.concatenate([edge_m, feet_m])), ground.heights_m, model, deck_source)
+
+
+def _tags_of(asset: Asset) -> Iterator[tuple[str, str]]:
+    """Each tag of a bridge and of the ways on it; values in lower case, one for each of several."""
+    for tags in (asset.tags, *(part["tags"] for part in asset.parts)):
+        for key, values in (tags or {}).items():
+            for value in str(values).split(";"):
+                yield key, value.strip().lower().replace("_", "-")
+
+
+def _is_tall(asset: Asset) -> bool:
+    """Whether pylons, arches or a lift may stand above its deck."""
+    return any(value in TALL_STRUCTURES.get(key, ()) for key, value in _tags_of(asset))
+
+
+def _outline(asset: Asset, frame: LocalFrame) -> shapely.Geometry:
+    return shapely.transform(shapely.force_2d(shapely.from_wkb(bytes(asset.geometry.wkb))), frame.to_metres)
+
+
+def _parts(outline: shapely.Geometry) -> tuple[shapely.Polygon, ...]:
+    """The parts of an outline that have a model, with fewer corners; none where it is not valid or has too many."""
+    simple = shapely.simplify(outline, OUTLINE_ERROR_M)
+    if not shapely.is_valid(simple) or shapely.get_num_coordinates(simple) > MAX_CORNERS:
+        return ()
+    polygons = [part for part in shapely.get_parts(simple) if isinstance(part, shapely.Polygon)]
+    return tuple(shapely.orient_polygons(part) for part in polygons if part.area >= MIN_PART_M2)
+
+
+def _bridge(asset: Asset, parts: tuple[shapely.Polygon, ...], ground: "_Ground", band: GroundBand) -> tuple[BridgeShape, str]:
+    """Return a bridge as it likely is, and what the height of its deck is taken from.
+
+    The stated height of a bridge with pylons or arches is theirs, not that of its deck.
+    """
+    corners = np.concatenate([shapely.get_coordinates(part.exterior) for part in parts])
+    tags = asset.tags or (asset.parts[0]["tags"] if asset.parts else {})
+    deck_m, source = deck_of(np.nan_to_num(ground.heights_m(corners)), None if _is_tall(asset) else asset.height_m, tags)
+    counted_m = OTHER_TOP_M[AssetKind.BRIDGE] if asset.height_m is None else asset.height_m
+    top_m = band.highest_low_m(corners) + counted_m
+    return BridgeShape(parts, deck_m, top_m, lambda places: np.nan_to_num(ground.heights_m(places)), OUTLINE_ERROR_M), source
+
+
+def _bridges_beside(asset: Asset, ground: "_Ground", band: GroundBand) -> Iterator[BridgeShape]:
+    """Other bridges so near that they hide parts of this one."""
+    west, south, east, north = asset.geometry.extent
+    margin = np.array([BESIDE_M, BESIDE_M]) / (ground.frame.metres_per_degree_east, ground.frame.metres_per_degree_north)
+    near = area_of((west - margin[0], south - margin[1], east + margin[0], north + margin[1]))
+    rows = Asset.objects.filter(kind=AssetKind.BRIDGE, vanished_at=None, geometry__intersects=near).exclude(pk=asset.pk)
+    for row in rows.order_by("pk")[:MAX_BESIDE]:
+        parts = _parts(_outline(row, ground.frame))
+        if parts:
+            yield _bridge(row, parts, ground, band)[0]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from django.core.cache import cache
 from inspection.models import Asset
 from inspection.selectors.planning import DatasetVersion, terrain_at
 from missions.models import Route, Waypoint
-from missions.selectors.inspection_sites import BridgeHeightUnknown, SiteOnMap, site_on_map
+from missions.selectors.inspection_sites import SiteOnMap, UnfitBridge, site_on_map
 from operation.reasons import Reason, reason_from_json
 from operation.version import VERSION as PROGRAM_VERSION
 from planning.context import ResolvedTarget
@@ -39,7 +39,7 @@ class NotATower(Exception):
 
 
 def planned_views(asset: Asset, views: ViewsRequest) -> tuple[SiteOnMap, ViewPlan]:
-    """Return the site of an asset and its photos. Raises NotATower, BridgeHeightUnknown, TooManyPhotos or NoWay."""
+    """Return the site of an asset and its photos. Raises NotATower, UnfitBridge, TooManyPhotos or NoWay."""
     found = site_on_map(asset, views)
     if found is None:
         raise NotATower
@@ -83,8 +83,8 @@ def _photo_flight(asset: Asset, views: ViewsRequest, version: DatasetVersion) ->
         flight: PhotoFlight | Reason = _flight(*planned_views(asset, views), views)
     except NotATower:
         return Reason("photos_not_a_tower")
-    except BridgeHeightUnknown:
-        flight = Reason("photos_bridge_height")
+    except UnfitBridge as error:
+        flight = Reason(f"photos_{error.code}")
     except TooManyPhotos:
         flight = Reason("photos_too_many")
     except NoWay:

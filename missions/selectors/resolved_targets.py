@@ -134,7 +134,9 @@ def _course(asset: Asset, index: int, target: TargetRequest) -> tuple[LonLat, ..
     if asset.kind == AssetKind.TOWER:
         _refuse_far(f"targets.{index}.position", float(distance_m(np.array(centre), np.array(target.position))[0]))
         return (centre,)
-    return (_on_area(asset.geometry, index, target.position),)
+    place = _on_area(asset.geometry, index, target.position)
+    has_views = target.task is not None and target.task.views is not None
+    return (centre if has_views else place,)  # photos are planned from over the middle
 
 
 def _course_on_line(asset: Asset, index: int, target: TargetRequest) -> tuple[LonLat, ...]:

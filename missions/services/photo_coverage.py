@@ -18,7 +18,7 @@ from inspection.models import Asset
 from inspection.selectors.planning import DatasetVersion, current_dataset_version
 from missions.hooks.taken_photos import PhotoOfMission, RehearsedPhotos, achieved_photos, rehearsed_photos
 from missions.models import InspectionTarget, Mission
-from missions.selectors.inspection_sites import BridgeHeightUnknown, SiteOnMap, site_on_map
+from missions.selectors.inspection_sites import SiteOnMap, UnfitBridge, site_on_map
 from missions.selectors.photo_flights import KEPT_S, kept_by
 from missions.services.view_plans import coverage_json
 from planning.task import MM_PER_M, ViewPattern, ViewsRequest, task_from_json
@@ -223,7 +223,7 @@ class _Proving:
 def _site(asset: Asset, views: ViewsRequest) -> tuple[SiteOnMap, ProofSurface] | None:
     try:
         found = site_on_map(asset, views)
-    except BridgeHeightUnknown:
+    except UnfitBridge:
         return None
     if found is None:
         return None

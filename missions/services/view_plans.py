@@ -29,7 +29,7 @@ ZONE_STEP_M = 5.0  # between places of the flight whose heights above ground are
 def plan_views(*, asset: Asset, views: ViewsRequest) -> dict[str, Any]:
     """Return the plan in the shape of the API, and keep its flight for missions.
 
-    Raises NotATower, BridgeHeightUnknown, TooManyPhotos, or NoWay where no flight keeps out of what stands there below the greatest height.
+    Raises NotATower, UnfitBridge, TooManyPhotos, or NoWay where no flight keeps out of what stands there below the greatest height.
     """
     version = current_dataset_version()
     found, plan = planned_views(asset, views)

@@ -16,7 +16,7 @@ from rest_framework.views import APIView
 from inspection.models import Asset
 from missions import services
 from missions.reason_texts import plan_with_texts
-from missions.selectors.inspection_sites import BridgeHeightUnknown
+from missions.selectors.inspection_sites import UnfitBridge
 from missions.selectors.photo_flights import NotATower
 from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
@@ -159,14 +159,14 @@ class ViewPlans(APIView):
         except NotATower as error:
             message = reason_text(Reason("photos_not_a_tower"))
             raise ApiProblem(400, "not_a_tower", message, details={"asset": [message]}) from error
-        except BridgeHeightUnknown as error:
-            message = reason_text(Reason("photos_bridge_height"))
-            raise ApiProblem(409, "bridge_height_unknown", message, details={"asset": [message]}) from error
+        except UnfitBridge as error:
+            message = reason_text(Reason(f"photos_{error.code}"))
+            raise ApiProblem(409, error.code, message, details={"asset": [message]}) from error
         except TooManyPhotos as error:
             message = _("It would take too many photos. Choose a coarser ground sample distance, or a camera with more pixels.")
             raise ApiProblem(400, "too_many_photos", message, details={"gsd_mm": [message]}) from error
         except NoWay as error:
-            message = _("No flight keeps clear of wires, ground and the greatest height here.")
+            message = _("No flight keeps clear of wires, structures, ground and the greatest height here.")
             raise ApiProblem(409, "no_way", message) from error
         return Response(plan)
 

@@ -58,7 +58,16 @@ def _without_photos(target: ResolvedTarget, airspace: Airspace) -> UnassignedTar
 
 
 def target_height_m(target: ResolvedTarget, airspace: Airspace) -> float:
-    """The asset's height, not less than what its line's voltage tells; over a stretch of a line not less than its tallest support."""
+    """The asset's height, not less than what its line's voltage tells; over a stretch of a line not less than its tallest support.
+
+    Of a target with photos so much that the UAV comes to it and leaves it no lower than where the flight through them begins.
+    """
+    if target.photos is not None:
+        return max(_asset_height_m(target, airspace), float(target.photos.agl_m[0]) - airspace.flight.clearance_m)
+    return _asset_height_m(target, airspace)
+
+
+def _asset_height_m(target: ResolvedTarget, airspace: Airspace) -> float:
     if target.asset is None:
         return target.height_m
     if target.is_stretch:

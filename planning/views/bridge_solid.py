@@ -27,13 +27,15 @@ ANCHOR_EVERY_M = 12.0
 class BridgeShape:
     """A bridge on the map. parts: polygons in metres east and north of its middle; deck_m: of the level deck over the ground there.
 
-    top_m: as high as planners count it; ground_m: of places (n, 2), over that in the middle [m], known everywhere.
+    top_m: as high as planners count it; ground_m: of places (n, 2), over that in the middle [m], known everywhere. outline_error_m: by
+    which the real outline may be beside parts.
     """
 
     parts: tuple[shapely.Polygon, ...]
     deck_m: float
     top_m: float
     ground_m: Callable[[FloatArray], FloatArray]
+    outline_error_m: float = 0.0
 
     @cached_property
     def decks(self) -> tuple["_Deck", ...]:
@@ -77,16 +79,23 @@ class BridgeShape:
         builder, low_m = SolidBuilder(), self.deck_m - SLAB_M
         for deck in self.decks:
             flat = deck.triangles()
-            builder.faces(builder.part(Component.DECK), _at(flat, self.deck_m))
-            builder.faces(builder.part(Component.UNDERSIDE), _at(flat, low_m)[:, ::-1])
+            self._add(builder, Component.DECK, _at(flat, self.deck_m))
+            self._add(builder, Component.UNDERSIDE, _at(flat, low_m)[:, ::-1])
             for side in deck.sides():
-                builder.faces(builder.part(Component.FACE), np.concatenate([_wall(*edge, low_m, self.deck_m) for edge in side]))
+                self._add(builder, Component.FACE, np.concatenate([_wall(*edge, low_m, self.deck_m) for edge in side]))
             for wall in deck.walls():
                 if self._room_m(wall) > MIN_ROOM_M:
                     part = builder.part(Component.ABUTMENT if wall.is_end else Component.PIER)
                     foot_m = low_m - self._room_m(wall)
                     builder.faces(part, np.concatenate([_wall(*edge, foot_m, low_m) for edge in wall.edges()]))
         return builder.solid()
+
+    def _add(self, builder: SolidBuilder, component: Component, triangles: FloatArray) -> None:
+        """Add what is above the ground of it: an end of the slab may be in the bank."""
+        middle = triangles.mean(axis=1)
+        above = triangles[middle[:, 2] >= self.ground_m(middle[:, :2])]
+        if len(above):
+            builder.faces(builder.part(component), above)
 
     def _room_m(self, wall: "_Wall") -> float:
         return self.deck_m - SLAB_M - float(self.ground_m(wall.corners).min())

@@ -26,10 +26,8 @@ OUT_ABOVE_M = (0.0, 6.0, 12.0, 20.0)  # of candidate positions above the keep-ou
 ROW_AZIMUTH_STEP_DEG, ROW_OUT_ABOVE_M = 30.0, (0.0, 6.0, 15.0)
 ROW_CUBE_M, CUBE_GROWTH, MAX_POSITIONS = 2.0, 1.3, 3_000  # one position in each cube, and at most so many in all
 MIN_PATCH_M, MAX_PATCH_M, PATCHES_HIGH = 1.0, 2.5, 16  # sides of patches, by the height of the asset
-MAX_PATCHES, SIDE2_PER_AREA = (
-    3_000,
-    4.0,
-)  # about: of larger surfaces patches are larger; a patch has about a quarter of the square of its side
+MAX_PATCHES = 3_000  # about: of larger surfaces patches are larger
+SIDE2_PER_AREA = 4.0  # of a patch: the square of its side, divided by its area
 BEYOND_M = 0.5  # of the keep-out, for candidate positions
 ABOVE_M = (0.5, 6.0)  # the top of the keep-out
 DISTANCE_SHARES = (0.0, 0.35, 0.75)  # of the way from the keep-out to the farthest place
@@ -69,7 +67,7 @@ def detail_views(site: InspectionSite, camera: Camera, rules: DetailRules) -> De
     Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance, or too much of it hides.
     """
     solid, keep_out = site.solid, site.keep_out
-    caster = RayCaster([solid])
+    caster = RayCaster([solid, *site.hiding])
     farthest_m = reach_m(camera, rules.asked_gsd_m)
     least_m = max(MIN_PATCH_M, math.sqrt(SIDE2_PER_AREA * solid.area_m2 / MAX_PATCHES))
     for patch_m in (float(np.clip(float(solid.box[1][2]) / PATCHES_HIGH, least_m, max(MAX_PATCH_M, least_m))), least_m):

@@ -60,7 +60,8 @@ class InspectionSite:
     """The inspected asset, whose foot or middle is the origin, and what is kept from it and its surroundings.
 
     bearing_deg: of a tower's line, of a bridge's axis. bands: of a tower's spans. around_m: how far from the asset its surroundings are
-    known. anchors (n, 2): places of the asset around which photos are looked for; reach_m: to its farthest corner, 0 of towers.
+    known. anchors (n, 2): places of the asset around which photos are looked for; reach_m: to its farthest corner, 0 of towers. hiding:
+    what stands beside it and hides parts of it.
     """
 
     solid: Solid
@@ -71,6 +72,7 @@ class InspectionSite:
     around_m: float = SITE_M
     anchors: FloatArray = field(default_factory=lambda: np.zeros((1, 2)))
     reach_m: float = 0.0
+    hiding: tuple[Solid, ...] = ()
 
 
 def tower_site(
@@ -102,8 +104,11 @@ def bridge_site(
     band: GroundBand,
     obstacles: Sequence[Obstacle] = (),
     lens_offset_m: float = 0.0,
+    hiding: Sequence[BridgeShape] = (),
 ) -> InspectionSite:
     """Return the site of a bridge with what is within SITE_M of it; see tower_site. Vehicles and masts stand on its deck.
+
+    hiding: bridges beside it, which are among the obstacles too.
 
     The UAV is beside or above the bridge, never under it. The clearance is at least that of a railway's contact wire.
     """
@@ -111,10 +116,11 @@ def bridge_site(
     kept_m = max(clearance_m(voltage_v, rules) for voltage_v in voltages_v) + lens_offset_m
     top_m = max(bridge.deck_m + ON_DECK_M, bridge.top_m)
     around_m = bridge.reach_m + SITE_M
-    columns = [*(Obstacle(corners, 0.0, top_m) for corners in bridge.pieces()), *_columns(supports), *obstacles]
+    columns = [*(Obstacle(corners, bridge.outline_error_m, top_m) for corners in bridge.pieces()), *_columns(supports), *obstacles]
     kept = keep_out(columns, _wires(supports, spans), kept_m, band, around_m)
     solid, anchors = bridge.solid(), bridge.anchors()
-    return InspectionSite(solid, bridge.bearing_deg, kept_m, kept, (), around_m, anchors, bridge.reach_m)
+    hides = tuple(own.solid() for own in hiding)
+    return InspectionSite(solid, bridge.bearing_deg, kept_m, kept, (), around_m, anchors, bridge.reach_m, hides)
 
 
 def _columns(supports: Sequence[StandingSupport]) -> list[Obstacle]:

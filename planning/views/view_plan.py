@@ -131,7 +131,9 @@ def _clear_m(middle: FloatArray, forward: FloatArray, least_m: float, site: Insp
     """The least distance [m] from the middle, from which an axis looks, that is out of the keep-out; None within the surroundings."""
     level = math.hypot(float(forward[0]), float(forward[1]))
     away_m = np.arange(least_m, (site.around_m - UNKNOWN_M) / level, STEP_M)
-    clear = np.flatnonzero(~site.keep_out.holds(middle - away_m[:, None] * forward)) if len(away_m) else np.zeros(0)
+    places = middle - away_m[:, None] * forward
+    is_known = np.abs(places[:, :2]).max(axis=1, initial=0.0) <= site.around_m - UNKNOWN_M
+    clear = np.flatnonzero(~site.keep_out.holds(places) & is_known) if len(away_m) else np.zeros(0)
     return float(away_m[int(clear[0])]) if len(clear) else None
 
 

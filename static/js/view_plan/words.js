@@ -76,15 +76,16 @@ export function modelText({ form, height_m, height_source: source, voltage_v, is
 }
 
 /**
- * "Model: deck 8 m above ground (estimated), 60 m × 12 m, 1 pier (assumed)." @param {BridgeModel} bridge
+ * "Model: deck 8 m above ground (estimated), 60 m × 12 m, counted as 34 m high, 1 pier (position assumed)." @param {BridgeModel} bridge
  */
-export function bridgeText({ deck_height_m, deck_source: source, length_m, width_m, piers }) {
+export function bridgeText({ deck_height_m, deck_source: source, top_m, length_m, width_m, piers }) {
   const height = exactHeightText(deck_height_m);
   const facts = [
     source === "tag"
       ? t("deck {height} above ground", { height })
       : t("deck {height} above ground (estimated)", { height }),
     `${exactHeightText(length_m)} × ${exactHeightText(width_m)}`,
+    t("counted as {height} high", { height: exactHeightText(top_m) }),
     piers > 0 && tn(piers, "{count} pier (position assumed)", "{count} piers (positions assumed)"),
   ];
   return t("Model: {facts}.", { facts: facts.filter(Boolean).join(", ") });

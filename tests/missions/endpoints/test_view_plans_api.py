@@ -237,7 +237,36 @@ def test_a_bridge_with_pylons_of_unknown_height_is_refused(client: Client) -> No
     assert (refused.status_code, refused.json()["error"]["code"]) == (409, "bridge_height_unknown")
     own.height_m = 50.0
     own.save()
-    assert planned(client, body)["bridge"]["top_m"] >= 50.0
+    bridge = planned(client, body)["bridge"]
+    assert bridge["top_m"] >= 50.0
+    assert (bridge["deck_height_m"], bridge["deck_source"]) == (6.5, "layer"), "the stated height is that of its pylons"
+
+
+@pytest.mark.parametrize(
+    "facts",
+    [{"tags": {"bridge": "suspension"}}, {"tags": {"bridge:structure": "truss; Simple_Suspension"}},
+     {"tags": {"man_made": "bridge"}, "parts": [{"osm_id": 7, "tags": {"layer": "1"}}, {"osm_id": 8, "tags": {"bridge:movable": "lift"}}]}],
+)  # fmt: skip
+def test_pylons_are_read_from_any_tag_of_a_bridge_and_its_ways(client: Client, facts: dict[str, Any]) -> None:
+    refused = post(client, "view-plans", {"asset": overpass(40.0, 10.0, **facts).pk, "camera_key": ZOOM, "gsd_mm": 3})
+    assert refused.json()["error"]["code"] == "bridge_height_unknown"
+
+
+@pytest.mark.parametrize(("length_m", "code"), [(700.0, "bridge_too_long"), (0.5, "bridge_outline")])
+def test_bridges_without_a_model_are_refused(client: Client, length_m: float, code: str) -> None:
+    refused = post(client, "view-plans", {"asset": overpass(length_m, 1.0).pk, "camera_key": ZOOM, "gsd_mm": 3})
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, code)
+
+
+def test_a_bridge_beside_it_hides_the_inner_face(client: Client) -> None:
+    own, beside = overpass(40.0, 10.0), overpass(40.0, 10.0)
+    metres = LocalFrame.around(10.05, 56.05).metres_per_degree_north
+    moved = [[(lon, lat + 10.4 / metres) for lon, lat in ring] for ring in beside.geometry.coords[0]]
+    beside.geometry = MultiPolygon(Polygon(*moved), srid=4326)
+    beside.save()
+    rows = planned(client, {"asset": own.pk, "camera_key": ZOOM, "gsd_mm": 3})["coverage"]["components"]
+    faces = sorted(row["shown"] for row in rows if row["component"] == "face")
+    assert faces[0] < 0.6 < 0.9 < faces[1]
 
 
 def test_only_towers_of_lines_and_bridges_are_planned(client: Client) -> None:

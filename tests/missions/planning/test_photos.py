@@ -7,6 +7,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
+from django.contrib.gis.geos import MultiPolygon, Polygon
 from django.core.cache import cache
 from django.test import Client
 from django.utils import timezone
@@ -14,6 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.models import Asset
 from inspection.network.spans import spans_of
 from inspection.selectors.planning import planning_read
 from missions.models import Mission, MissionState, Uav, UavType
@@ -29,7 +31,7 @@ from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import post
 from tests.missions.photo_missions import CAMERA, MASL_M, body, made, plan_photos_once, tern, terrain
-from tests.missions.worlds import World, power_line, world, zone_around
+from tests.missions.worlds import World, power_line, rebuild, world, zone_around
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db
@@ -217,6 +219,27 @@ def test_a_bridge_and_a_tower_are_photographed_in_one_route(here: World, client:
     assert [row["promised"]["photos"] for row in coverage] == [len(views) for views in by_target.values()]
     shown = {row["component"]: row["shown"] for row in coverage[0]["promised"]["coverage"]["components"]}
     assert min(shown[kind] for kind in ("deck", "face")) > 0.9
+
+
+@pytest.mark.parametrize("position", [None, [10.0082, 56.00605]])
+def test_over_a_bridge_no_leg_of_its_photos_is_lower_than_its_keep_out(here: World, client: Client, position: list[float] | None) -> None:
+    """Its tagged height and the usual 15 m over it are less than 12 m for masts on the deck and the clearance."""
+    lon, lat = here.bridge.centre.coords
+    outline = Polygon.from_bbox((lon - 3e-4, lat - 1e-4, lon + 3e-4, lat + 1e-4))  # 37 m by 22 m
+    Asset.objects.filter(pk=here.bridge.pk).update(height_m=5.0, geometry=MultiPolygon(outline, srid=4326))
+    rebuild()
+    asked = photos_of(here.bridge) | ({} if position is None else {"position": position})
+    plan = made(client, body(asked))["plan"]
+    assert plan["unassigned"] == []
+    (route,) = plan["routes"]
+    rows = [row for row in route["waypoints"] if row["target"] == 0]
+    assert photos(plan)
+    places = LocalFrame.around(lon, lat).to_metres(np.array([row["position"] for row in rows]))
+    agl_m = np.array([row["altitude_agl_m"] for row in rows])
+    assert np.abs(places[0]).max() < 0.1, "photos are flown from over the middle"
+    is_over = (np.abs(places) < (18.0, 11.0)).all(axis=1)
+    assert is_over[[0, -1]].all()
+    assert agl_m[is_over].min() >= 5.0 + 12.0 + 7.0
 
 
 @pytest.mark.parametrize(
