@@ -65,6 +65,15 @@ export function isUsualTask(target) {
 export const canHaveViews = ({ asset, kind }) => asset !== null && (kind === "tower" || kind === "bridge");
 
 /**
+ * Whether it is photographed like this: wires are those of towers.
+ *
+ * @param {Pick<PickedTarget, "asset" | "kind">} target
+ * @param {Pick<Views, "pattern">} views
+ */
+export const takesViews = (target, { pattern }) =>
+  canHaveViews(target) && (pattern !== "spans" || target.kind === "tower");
+
+/**
  * The same targets with another task at some of them; without seconds or speed each keeps its own where the kind stays. A speed is that
  * along a line; null: as the UAV flies.
  *
@@ -101,7 +110,7 @@ export function withTask(selection, keys, { kind, hold_s = null, speed_mps }) {
  */
 export function withViews(selection, keys, views) {
   return changed(selection, keys, (target) => {
-    if (!canHaveViews(target) || (views.pattern === "spans" && target.kind !== "tower")) return target;
+    if (!takesViews(target, views)) return target;
     const now = taskOf(target);
     const hold_s = now.views ? now.hold_s : VIEWS_HOLD_S;
     return { ...target, task: { kind: "photo", hold_s, views: inOrder(views) }, sensor: views.camera.name };

@@ -326,6 +326,19 @@ test("photos of every part need the camera, and another task needs it no more", 
   });
   assert.equal(viewed.targets[0].sensor, "Zoom");
   assert.equal(viewed.targets[1], selection.targets[1], "a line is no tower");
+  const bridge = { ...tower, key: "bridge", kind: "bridge" };
+  for (const [pattern, kind] of [
+    ["spans", undefined],
+    ["overview", "photo"],
+  ]) {
+    const [target] = withViews({ ...selection, targets: [bridge] }, ["bridge"], {
+      pattern,
+      gsd_mm: 2,
+      min_height_m: 4,
+      camera,
+    }).targets;
+    assert.equal(target.task?.kind, kind, "wires are those of towers");
+  }
   const stored = {
     ...viewed.targets[0],
     task: {

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { cameraOf, groupsOf, matching } from "../../../static/js/cameras/catalogue.js";
 import { cameraText, focalText, gsdAt_mm, readTitle, sourcesOf, standoff_m } from "../../../static/js/cameras/words.js";
 import { firstThatReaches } from "../../../static/js/view_plan/cameras.js";
-import { byKind, modelText, nothingText, restText, shareText } from "../../../static/js/view_plan/words.js";
+import { bridgeText, byKind, modelText, nothingText, restText, shareText } from "../../../static/js/view_plan/words.js";
 
 const camera = {
   name: "Zoom",
@@ -64,6 +64,18 @@ test("components of a kind count together by their area", () => {
   assert.equal(shareText(0.999), "99\u00a0%");
 });
 
+test("a bridge tells the estimated height of its deck and that places of piers are assumed", () => {
+  const bridge = { deck_height_m: 6.5, deck_source: "layer", top_m: 34, length_m: 60, width_m: 12, piers: 1 };
+  assert.equal(
+    bridgeText({ ...bridge, bearing_deg: 90 }),
+    "Model: deck 6.5\u00a0m above ground (estimated), 60\u00a0m × 12\u00a0m, counted as 34\u00a0m high, 1 pier (position assumed).",
+  );
+  assert.match(
+    bridgeText({ ...bridge, deck_source: "tag", piers: 0 }),
+    /deck 6.5.m above ground, 60.m × 12.m, counted as 34.m high\.$/,
+  );
+});
+
 test("the model's assumptions are one sentence", () => {
   const model = { form: "lattice", height_m: 50, height_source: "assumed", voltage_v: 380_000, is_anchor: false };
   assert.equal(modelText(model), "Model: lattice tower, 50\u00a0m (assumed), 380\u00a0kV, suspension.");
@@ -82,7 +94,7 @@ test("a plan that shows nothing says what the camera gives, and what to change",
   assert.match(nothingText(near), /^This camera focuses from 20.m on and shows 0.2.mm there/);
   assert.equal(
     nothingText({ ...plan, gsd_mm: 2, coverage: { components: [{ ...part, limit: "height" }] } }),
-    "Most of the tower: only from below the least height.",
+    "Most of the surface: only from below the least height.",
   );
 });
 

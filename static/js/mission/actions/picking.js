@@ -3,7 +3,7 @@
 import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import * as picks from "../selection.js";
-import { withTask, withViews } from "../tasks.js";
+import { takesViews, withTask, withViews } from "../tasks.js";
 import { createNetworkPicking } from "./network_picking.js";
 
 /** @import { AssetFeature } from "../../api_types.d.ts" */
@@ -111,8 +111,9 @@ function createTargetChanges(context) {
 
   /** Plans photos of targets. @param {string[]} keys @param {Views} views */
   function setViews(keys, views) {
+    const set = selection().targets.filter((target) => keys.includes(target.key) && takesViews(target, views)).length;
     if (!change(withViews(selection(), keys, views))) return;
-    toast(tn(keys.length, "The task of {count} target is set.", "The task of {count} targets is set."), undo);
+    toast(tn(set, "The task of {count} target is set.", "The task of {count} targets is set."), undo);
   }
 
   /** wishes: { priority } or { sensor } @param {string[]} keys @param {Partial<Wishes>} wishes */
