@@ -62,7 +62,7 @@ def test_photos_of_every_part_are_chosen_taken_over_and_kept(visitor: Visitor, p
     expect(chip).to_be_focused()
     expect(chip).to_have_attribute("title", re.compile("Photograph every part, GSD 4"))
     page.get_by_role("button", name=re.compile("^Plan P")).click()
-    message = page.get_by_text("Photos near wires need terrain data around the tower.").first
+    message = page.get_by_text("Photos need terrain data around the tower or bridge.").first
     routes = page.get_by_role("list", name="Routes").get_by_role("listitem")
     has_terrain = bool(asks(page, "/terrain")["features"])
     expect(routes.first if has_terrain else message).to_be_visible(timeout=PLANNED_MS)
