@@ -202,7 +202,11 @@ def overpass(length_m: float, width_m: float, **facts: Any) -> Asset:
 
 @pytest.mark.parametrize(
     ("facts", "deck_height_m", "deck_source", "top_m"),
-    [({}, 6.5, "layer", 34.0), ({"tags": {"layer": "2"}}, 13.0, "layer", 34.0), ({"height_m": 9.0}, 9.0, "tag", 13.0)],
+    [
+        ({}, 6.5, "layer", 34.0),
+        pytest.param({"tags": {"layer": "2"}}, 13.0, "layer", 34.0, marks=pytest.mark.long),
+        ({"height_m": 9.0}, 9.0, "tag", 13.0),
+    ],
 )
 def test_photos_of_a_bridge_keep_clear_of_it_and_show_it(
     client: Client, facts: dict[str, Any], deck_height_m: float, deck_source: str, top_m: float

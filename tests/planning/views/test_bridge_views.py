@@ -104,7 +104,7 @@ def test_finer_patches_prove_what_the_plan_promises(name: str) -> None:
 def test_the_underside_of_a_low_bridge_is_said_to_be_out_of_reach_and_of_a_high_one_is_shown() -> None:
     low = next(row for row in planned(QUICK[0])[1].components if row.component is Component.UNDERSIDE)
     assert (low.shown, low.reachable, low.limit) == (0.0, 0.0, Limit.HEIGHT)
-    high = detail_plan(site_of(bridge([straight(40.0, 9.0)], 20.0)), ZOOM, DetailRules(0.004), ViewSpeeds())
+    high = detail_plan(site_of(bridge([straight(25.0, 6.0)], 20.0)), ZOOM, DetailRules(0.004), ViewSpeeds())
     under = next(row for row in high.components if row.component is Component.UNDERSIDE)
     assert under.shown > 0.8
 
