@@ -146,6 +146,11 @@ class Asset(models.Model):
             models.Index(fields=["updated_at", "id"], name="asset_updated_idx"),
         ]
 
+    @property
+    def bridge_tags(self) -> list[dict[str, str]]:
+        """The tags of a bridge, then those of each way on its area."""
+        return [self.tags, *(part["tags"] for part in self.parts)]
+
     def __str__(self) -> str:
         return self.ref or self.name or f"{AssetKind(self.kind).label} {self.osm_type}{self.osm_id or self.pk}"
 

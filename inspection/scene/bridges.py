@@ -1,7 +1,7 @@
 """The likely height of a bridge's deck, and what is assumed of its slab, piers and abutments. Pure."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -13,6 +13,12 @@ SLAB_M = 1.4
 PIER_EVERY_M, PIER_M = 30.0, 1.4  # along the bridge: between piers, and of each
 ABUTMENT_INSET_M = 1.5  # from the end of the outline
 PIER_SHARE, PIER_HALF_M = 0.55, 6.0  # of half of the deck's width, and at most: of half of a pier's
+TALL_STRUCTURES = {  # values of tags of bridges with pylons, arches or a lift above their deck
+    "bridge": {"cable-stayed", "movable", "suspension"},
+    "bridge:movable": {"bascule", "drawbridge", "lift"},
+    "bridge:structure": {"arch", "cable-stayed", "simple-suspension", "suspension"},
+    "bridge:support": {"pylon"},
+}
 _LAYER = re.compile(r"-?[0-9]{1,3}")
 
 
@@ -27,11 +33,20 @@ def deck_amsl_m(ground_m: FloatArray, layer: int) -> float:
     return float(max(np.max(ground_m), np.min(ground_m) + layer * LAYER_M))
 
 
-def deck_of(ground_m: FloatArray, height_m: float | None, tags: Mapping[str, str]) -> tuple[float, str]:
+def has_tall_structure(tags: Sequence[Mapping[str, str]]) -> bool:
+    """Return whether pylons, arches or a lift may stand above a bridge's deck. tags: of the bridge and of each way on it."""
+    return any(
+        value.strip().lower().replace("_", "-") in TALL_STRUCTURES[key]
+        for own in tags for key in TALL_STRUCTURES.keys() & own.keys() for value in str(own[key]).split(";")
+    )  # fmt: skip
+
+
+def deck_of(ground_m: FloatArray, height_m: float | None, tags: Sequence[Mapping[str, str]]) -> tuple[float, str]:
     """Return the height [m] of a bridge's deck, and what it is taken from: "tag" or "layer".
 
-    ground_m (n,): the terrain at the corners of its outline; height_m: of its top above ground, as tagged.
+    ground_m (n,): the terrain at the corners of its outline; height_m: of its top above ground, as tagged, which is that of its deck unless
+    something tall stands on it; tags: of the bridge and of each way on it.
     """
-    if height_m is not None:
+    if height_m is not None and not has_tall_structure(tags):
         return float(np.mean(ground_m)) + height_m, "tag"
-    return deck_amsl_m(ground_m, layer_of(tags)), "layer"
+    return deck_amsl_m(ground_m, layer_of(next(filter(None, tags), {}))), "layer"

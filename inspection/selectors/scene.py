@@ -26,7 +26,7 @@ from inspection.selectors.terrain import ground_heights_m
 from inspection.selectors.terrain_models import finest_step_m, terrain_models
 from inspection.selectors.zone_table import zone_table
 
-RECIPE = 2  # part of the ETag: incremented when the content of a scene changes
+RECIPE = 3  # part of the ETag: incremented when the content of a scene changes
 MIN_SIDE_M, MAX_SIDE_M = 50.0, 40_000.0
 MAX_SHRINKING_LAT_DEG = 85.0
 MAX_POSTS = 225  # of the terrain, along each side
@@ -300,7 +300,7 @@ def _bridges(rows: list[tuple[Asset, shapely.geometry.base.BaseGeometry]], groun
 
 def _bridge(asset: Asset, shape: shapely.geometry.base.BaseGeometry, edge_m: FloatArray) -> SceneBridge:
     """Return a bridge. height_m is its top as planners count it. edge_m: the terrain at its corners."""
-    deck_m, source = deck_of(edge_m, asset.height_m, asset.tags or (asset.parts[0]["tags"] if asset.parts else {}))
+    deck_m, source = deck_of(edge_m, asset.height_m, asset.bridge_tags)
     height_m = UNTAGGED_HEIGHT_M[NodeKind.BRIDGE] if asset.height_m is None else asset.height_m
     return SceneBridge(asset, shape, deck_m, source, height_m, "assumed" if asset.height_m is None else "tag")
 

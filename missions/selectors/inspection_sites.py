@@ -12,7 +12,7 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.models import Asset, AssetKind
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, UNTAGGED_HEIGHT_M
-from inspection.scene.bridges import deck_of
+from inspection.scene.bridges import deck_of, has_tall_structure
 from inspection.scene.overhead import Overhead
 from inspection.scene.supports import DrawnSupport
 from inspection.selectors.assets import Box, area_of
@@ -31,13 +31,7 @@ BEYOND_M = 50.0  # of what a flight may come near: supports, wires and other ass
 GROUND_BEYOND_M = 30.0  # of the same: the ground
 WIRES_BESIDE_M = 15.0  # of lines without drawn spans: from their axis to the outermost wire, swing included
 TRACK_BESIDE_M = 6.0  # of railways: half of their width with masts
-MIN_PART_M2 = 1.0  # of a bridge's outline: smaller parts are slips of the mapper
-TALL_STRUCTURES = {  # values of tags of bridges with pylons, arches or a lift above their deck
-    "bridge": {"cable-stayed", "movable", "suspension"},
-    "bridge:movable": {"bascule", "drawbridge", "lift"},
-    "bridge:structure": {"arch", "cable-stayed", "simple-suspension", "suspension"},
-    "bridge:support": {"pylon"},
-}
+MIN_PART_M2 = 1.0  # of a bridge's outline: smaller parts are drawing errors, and have no model
 MAX_BRIDGE_REACH_M = 300.0  # from its middle
 OUTLINE_ERROR_M, MAX_CORNERS = 0.3, 400  # by which the outline of a model is simplified, and its corners then
 BESIDE_M, MAX_BESIDE = 40.0, 20  # of bridges that may hide parts of another
@@ -107,7 +101,7 @@ def _tower_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
 def _bridge_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
     if asset.vanished_at is not None:
         return None
-    if asset.height_m is None and _is_tall(asset):
+    if asset.height_m is None and has_tall_structure(asset.bridge_tags):
         raise UnfitBridge("bridge_height_unknown")
     ground = _Ground.around(*asset.centre.coords)
     outline = _outline(asset, ground.frame)
@@ -123,27 +117,14 @@ def _bridge_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
     model, deck_source = _bridge(asset, parts, ground, band)
     feet_m = ground.heights_m(ground.frame.to_metres(found.position))
     supports, spans = _standing(found, ground.frame, np.nan_to_num(feet_m))
-    slips = [
+    small_parts = [
         Obstacle(shapely.get_coordinates(part), 0.0, model.top_m) for part in shapely.get_parts(outline) if shapely.area(part) < MIN_PART_M2
     ]
-    others = [*slips, *_others(asset, box, ground.frame, band)]
-    rules, beside = settings.CLEARANCE_RULES, list(_bridges_beside(asset, ground, band))
-    site = bridge_site(model, supports, spans, rules, band, others, _lens_offset_m(views), beside)
+    others = [*small_parts, *_others(asset, box, ground.frame, band)]
+    rules, occluders = settings.CLEARANCE_RULES, list(_bridges_beside(asset, ground, band))
+    site = bridge_site(model, supports, spans, rules, band, others, _lens_offset_m(views), occluders)
     edge_m = ground.heights_m(shapely.get_coordinates(outline))
     return SiteOnMap(site, ground.frame, ground.known_base_m(np.concatenate([edge_m, feet_m])), ground.heights_m, model, deck_source)
-
-
-def _tags_of(asset: Asset) -> Iterator[tuple[str, str]]:
-    """Each tag of a bridge and of the ways on it; values in lower case, one for each of several."""
-    for tags in (asset.tags, *(part["tags"] for part in asset.parts)):
-        for key, values in (tags or {}).items():
-            for value in str(values).split(";"):
-                yield key, value.strip().lower().replace("_", "-")
-
-
-def _is_tall(asset: Asset) -> bool:
-    """Whether pylons, arches or a lift may stand above its deck."""
-    return any(value in TALL_STRUCTURES.get(key, ()) for key, value in _tags_of(asset))
 
 
 def _outline(asset: Asset, frame: LocalFrame) -> shapely.Geometry:
@@ -160,13 +141,9 @@ def _parts(outline: shapely.Geometry) -> tuple[shapely.Polygon, ...]:
 
 
 def _bridge(asset: Asset, parts: tuple[shapely.Polygon, ...], ground: "_Ground", band: GroundBand) -> tuple[BridgeShape, str]:
-    """Return a bridge as it likely is, and what the height of its deck is taken from.
-
-    The stated height of a bridge with pylons or arches is theirs, not that of its deck.
-    """
+    """Return a bridge as it likely is, and what the height of its deck is taken from."""
     corners = np.concatenate([shapely.get_coordinates(part.exterior) for part in parts])
-    tags = asset.tags or (asset.parts[0]["tags"] if asset.parts else {})
-    deck_m, source = deck_of(np.nan_to_num(ground.heights_m(corners)), None if _is_tall(asset) else asset.height_m, tags)
+    deck_m, source = deck_of(np.nan_to_num(ground.heights_m(corners)), asset.height_m, asset.bridge_tags)
     counted_m = OTHER_TOP_M[AssetKind.BRIDGE] if asset.height_m is None else asset.height_m
     top_m = band.highest_low_m(corners) + counted_m
     return BridgeShape(parts, deck_m, top_m, lambda places: np.nan_to_num(ground.heights_m(places)), OUTLINE_ERROR_M), source

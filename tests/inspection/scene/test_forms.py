@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inspection.scene.bridges import LAYER_M, deck_amsl_m, layer_of
+from inspection.scene.bridges import LAYER_M, deck_amsl_m, deck_of, layer_of
 from inspection.scene.forms import Form, Layout, form_of, is_anchor, layout_of
 from inspection.scene.overhead import CATENARY_M, sag_m
 from inspection.scene.supports import LineFacts, arms_of, has_earth_wire, likely_height_m, phases_of
@@ -99,6 +99,8 @@ def test_a_deck_keeps_a_layers_room_and_is_no_lower_than_its_ends() -> None:
 
     assert deck_amsl_m(np.array([10.0, 10.0]), 1) == 10.0 + LAYER_M
     assert deck_amsl_m(np.array([40.0, 2.0, 41.0]), 1) == 41.0
+    assert deck_of(np.array([10.0, 12.0]), 20.0, [{}]) == (31.0, "tag")
+    assert deck_of(np.array([10.0, 10.0]), 80.0, [{"layer": "2"}, {"bridge:structure": "Cable_Stayed"}]) == (10.0 + 2 * LAYER_M, "layer")
     assert [layer_of({"layer": text}) for text in ("2", "-1", "", "x", "99")] == [2, 1, 1, 1, 5]
 
 
