@@ -94,6 +94,10 @@ def nearest_of_tower_m(stands: StandingTower, places: np.ndarray) -> float:
     return float(min(to_triangles_m(places, stands.solid.triangles).min(), *wires_m))
 
 
+def nearest_of_bridge_m(site: InspectionSite, places: np.ndarray) -> float:
+    return float(to_triangles_m(places, site.solid.triangles).min())
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kind", choices=list(TITLES), action="append")
@@ -103,10 +107,6 @@ def main() -> int:
     use_compiled_directory()
     warm_up()
     return max(run(kind, arguments.first, writes=arguments.write) for kind in arguments.kind or TITLES)
-
-
-def nearest_of_bridge_m(site: InspectionSite, places: np.ndarray) -> float:
-    return float(to_triangles_m(places, site.solid.triangles).min())
 
 
 def run(kind: str, first: int, *, writes: bool) -> int:

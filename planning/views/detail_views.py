@@ -67,7 +67,7 @@ def detail_views(site: InspectionSite, camera: Camera, rules: DetailRules) -> De
     Raises TooManyPhotos where the surface is too large for the picture at this ground sample distance, or too much of it hides.
     """
     solid, keep_out = site.solid, site.keep_out
-    caster = RayCaster([solid, *site.hiding])
+    caster = RayCaster([solid, *site.occluders])
     farthest_m = reach_m(camera, rules.asked_gsd_m)
     least_m = max(MIN_PATCH_M, math.sqrt(SIDE2_PER_AREA * solid.area_m2 / MAX_PATCHES))
     for patch_m in (float(np.clip(float(solid.box[1][2]) / PATCHES_HIGH, least_m, max(MAX_PATCH_M, least_m))), least_m):

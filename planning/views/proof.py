@@ -106,7 +106,7 @@ def proof_surface(site: InspectionSite, camera: Camera, asked_gsd_m: float, wire
     """Return the surface on which photos with this camera are proven: of the asset, or a tower's wires. camera: as flown_camera has it."""
     solid = site.solid if wires is None else wires
     patch_m = max(PROOF_PATCH_M, math.sqrt(2.0 * solid.area_m2 / PROOF_PATCHES)) if wires is None else PROOF_PATCH_M
-    patches, caster = patches_of(solid, patch_m), RayCaster([site.solid, *site.hiding])
+    patches, caster = patches_of(solid, patch_m), RayCaster([site.solid, *site.occluders])
     sampling = ViewSampling() if wires is None else WIRE_SAMPLING
     limits = limits_of(patches, site.keep_out, caster, camera, reach_m(camera, asked_gsd_m), sampling)
     away_m = site.reach_m + MAX_AWAY_M if wires is None else max(MAX_AWAY_M, site.around_m)

@@ -60,7 +60,7 @@ class InspectionSite:
     """The inspected asset, whose foot or middle is the origin, and what is kept from it and its surroundings.
 
     bearing_deg: of a tower's line, of a bridge's axis. bands: of a tower's spans. around_m: how far from the asset its surroundings are
-    known. anchors (n, 2): places of the asset around which photos are looked for; reach_m: to its farthest corner, 0 of towers. hiding:
+    known. anchors (n, 2): places of the asset around which photos are looked for; reach_m: to its farthest corner, 0 of towers. occluders:
     what stands beside it and hides parts of it.
     """
 
@@ -72,7 +72,7 @@ class InspectionSite:
     around_m: float = SITE_M
     anchors: FloatArray = field(default_factory=lambda: np.zeros((1, 2)))
     reach_m: float = 0.0
-    hiding: tuple[Solid, ...] = ()
+    occluders: tuple[Solid, ...] = ()
 
 
 def tower_site(
@@ -104,11 +104,11 @@ def bridge_site(
     band: GroundBand,
     obstacles: Sequence[Obstacle] = (),
     lens_offset_m: float = 0.0,
-    hiding: Sequence[BridgeShape] = (),
+    occluders: Sequence[BridgeShape] = (),
 ) -> InspectionSite:
     """Return the site of a bridge with what is within SITE_M of it; see tower_site. Vehicles and masts stand on its deck.
 
-    hiding: bridges beside it, which are among the obstacles too.
+    occluders: bridges beside it, which are among the obstacles too.
 
     The UAV is beside or above the bridge, never under it. The clearance is at least that of a railway's contact wire.
     """
@@ -119,7 +119,7 @@ def bridge_site(
     columns = [*(Obstacle(corners, bridge.outline_error_m, top_m) for corners in bridge.pieces()), *_columns(supports), *obstacles]
     kept = keep_out(columns, _wires(supports, spans), kept_m, band, around_m)
     solid, anchors = bridge.solid(), bridge.anchors()
-    hides = tuple(own.solid() for own in hiding)
+    hides = tuple(own.solid() for own in occluders)
     return InspectionSite(solid, bridge.bearing_deg, kept_m, kept, (), around_m, anchors, bridge.reach_m, hides)
 
 
