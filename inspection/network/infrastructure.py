@@ -1,6 +1,6 @@
 """The ground as plain arrays: what the builder reads."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,14 @@ class InfrastructurePlaces:
 
     def __len__(self) -> int:
         return len(self.asset)
+
+
+@dataclass(frozen=True)
+class BridgeOutlines:
+    """The areas of bridges, in their order."""
+
+    area: NDArray[np.object_] = field(default_factory=lambda: np.zeros(0, dtype=object))  # (n,) polygons in lon, lat [deg]
+    has_tall_structure: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))  # (n,) pylons, arches or a lift
 
 
 @dataclass(frozen=True)
@@ -63,3 +71,4 @@ class GroundData:
     lines: InfrastructureWays
     railways: InfrastructureWays
     zones: Zones
+    bridge_outlines: BridgeOutlines = field(default_factory=BridgeOutlines)  # of all bridges, or of none

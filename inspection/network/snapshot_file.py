@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.network.build.flyable import flyable_part, remember_flyable_part
-from inspection.network.build.network import Network
+from inspection.network.build.network import GRAPH_FIELDS, Network
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.asset_places import AssetPlaces
 from inspection.network.paths.contracted_graph import ContractedGraph
@@ -99,11 +99,11 @@ def _used_s(path: Path) -> float:
         return float("inf")
 
 
-LAYOUT = 4  # of the stored arrays and of the files; what has another layout is made anew
+LAYOUT = 5  # of the stored arrays and of the files; what has another layout is made anew
 FLYABLE = "flyable."  # begins the names of the flyable part's files, where it is not the whole graph
 NETWORKS, CLEARED = "networks", "cleared"
 KEPT_NETWORKS, MAX_MASKED_FILES = 3, 8
-NETWORK_FIELDS = [field.name for field in fields(Network)]  # which are also an inspection graph's
+NETWORK_FIELDS = [field.name for field in fields(Network)]
 
 Part = TypeVar("Part", ContractedGraph, HubLabels, NodeTree, AssetPlaces)
 
@@ -179,10 +179,10 @@ def read_masked(
         zone_wkb=zones.wkb,
         zone_id=zones.ids,
         zone_name=zones.names,
-        **{name: arrays[name] for name in NETWORK_FIELDS},
+        **{name: arrays[name] for name in GRAPH_FIELDS},
     )
     if any(name.startswith(FLYABLE) for name in arrays):
-        own: Arrays = {name: arrays[FLYABLE + name] for name in NETWORK_FIELDS}
+        own: Arrays = {name: arrays[FLYABLE + name] for name in GRAPH_FIELDS}
         flyable = replace(graph, **own)
         asset_places.remember(graph, _part(AssetPlaces, arrays, "places"))
     _remember_index(flyable, arrays)
@@ -219,4 +219,4 @@ def _part(kind: type[Part], arrays: Arrays, name: str) -> Part:
 
 
 def _arrays(graph: Network | InspectionGraph) -> Arrays:
-    return {name: getattr(graph, name) for name in NETWORK_FIELDS}
+    return {name: getattr(graph, name) for name in (NETWORK_FIELDS if isinstance(graph, Network) else GRAPH_FIELDS)}

@@ -1,5 +1,6 @@
 """Reads assets and zones as the plain arrays from which the graph is built."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,8 +10,9 @@ import shapely
 from django.db import connection
 
 from inspection.models import AssetKind
-from inspection.network.infrastructure import NO_OSM_NODE, GroundData, InfrastructurePlaces, InfrastructureWays, Zones
+from inspection.network.infrastructure import NO_OSM_NODE, BridgeOutlines, GroundData, InfrastructurePlaces, InfrastructureWays, Zones
 from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V
+from inspection.scene.bridges import has_tall_structure
 from inspection.selectors.ground import ground_revision
 
 READINGS = 3
@@ -45,6 +47,7 @@ def ground_data() -> GroundData:
             lines=_ways(AssetKind.LINE),
             railways=_ways(AssetKind.RAILWAY),
             zones=zones_of_the_ground(),
+            bridge_outlines=_bridge_outlines(),
         )
         if ground_revision() == revision:
             break
@@ -87,6 +90,19 @@ def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> Infrastru
         position=np.array([row[2:4] for row in rows], dtype=np.float64).reshape(-1, 2),
         height_m=np.array([np.nan if row[4] is None else row[4] for row in rows], dtype=np.float64),
     )
+
+
+def _bridge_outlines() -> BridgeOutlines:
+    rows = _rows(
+        """
+        SELECT ST_AsBinary(geometry), tags, jsonb_path_query_array(parts, '$[*].tags')
+        FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL ORDER BY id
+        """,
+        [AssetKind.BRIDGE],
+    )
+    tall = [has_tall_structure([tags, *of_parts]) for _, tags, of_parts in ((row[0], *map(json.loads, row[1:])) for row in rows)]
+    areas = shapely.from_wkb(np.array([bytes(row[0]) for row in rows], dtype=object))
+    return BridgeOutlines(np.asarray(areas, dtype=object).reshape(-1), np.array(tall, dtype=bool))
 
 
 def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> InfrastructureWays:

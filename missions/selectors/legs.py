@@ -134,7 +134,10 @@ def _spans_elsewhere(spans: Spans, position: FloatArray) -> Spans:
     for at in (position[0], position[-1]):
         for ends in (spans.start, spans.end):
             near &= (np.abs(ends - at) > AT_DEG).any(axis=1)
-    return spans_between(spans.start[near], spans.end[near], spans.start_height_m[near], spans.end_height_m[near], spans.asset[near])
+    ground = spans.start_ground[near], spans.end_ground[near]
+    return spans_between(
+        spans.start[near], spans.end[near], spans.start_height_m[near], spans.end_height_m[near], spans.asset[near], ground
+    )
 
 
 def _fault(zone: int | None, message: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The last look at towers and wires before a plan leaves: no leg passes one too near. Shares no code with the drawing that rises over them.
+"""The last look at towers, wires and bridges before a plan leaves: no leg passes one too near. Shares no code with the drawing of rises.
 
 Legs are straight from waypoint to waypoint in place and height; they are walked in steps, and each step is measured from the wires
 beside it, which hang no higher than straight from top to top. A flight through photos comes nearer: it keeps its own clearance, from the
@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.network.spans import Spans
+from inspection.network.spans import DECK, Spans
 from planning.rules import FlightRules
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.photo_flights import clearances_m
@@ -60,7 +60,7 @@ def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHe
     top_m = np.column_stack([spans.start_height_m[near], spans.end_height_m[near]])
     if is_known and ground_heights_m is not None:
         used = np.unique(span)
-        reported_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
+        reported_m = ground_heights_m(spans.ground_places(near[used])).reshape(2, -1).T
         top_m[used] += np.where(np.isnan(reported_m).any(axis=1, keepdims=True), UNKNOWN_TOP_M, reported_m)
     found: set[tuple[int, int]] = set()
     kept_m = clearances_m(points)[leg + 1]
@@ -206,7 +206,7 @@ def _is_inspected(points: RoutePoints, line: FloatArray, leg: int, start: FloatA
     """
     target = int(max(points.target[leg], points.target[leg + 1]))
     moves = bool((line[leg] != line[leg + 1]).any())
-    if target < 0 or (moves and points.target[leg] != points.target[leg + 1]):
+    if target < 0 or asset == DECK or (moves and points.target[leg] != points.target[leg + 1]):
         return False
     places = line[points.target == target]
     if min(float(np.hypot(*(places - place).T).min()) for place in (start, end)) <= SAME_M:

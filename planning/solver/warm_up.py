@@ -1,10 +1,8 @@
 """The compiled solvers run once, so that they are compiled, or loaded, before somebody waits for them."""
 
-from dataclasses import fields
-
 import numpy as np
 
-from inspection.network.build.network import Network
+from inspection.network.build.network import GRAPH_FIELDS, Network
 from inspection.network.warm_up import BESIDE, graph_to_rehearse_on
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, paths_between
@@ -28,7 +26,7 @@ def rehearse_ways() -> None:
     graph, zones = graph_to_rehearse_on(), ZoneIndex([], [], [])
     access = AccessRules(1_000.0, 1_000.0, on_asset_m=1.0, off_network_factor=2.0, zone_clearance_m=0.0)
     paths_between(graph, zones, [Terminal(BESIDE)], [Terminal(BESIDE)], [Terminal(BESIDE)], access)
-    network = Network(**{field.name: getattr(graph, field.name) for field in fields(Network)})
+    network = Network(**{name: getattr(graph, name) for name in GRAPH_FIELDS})
     flights = [PossibleFlight(BESIDE, End.RETURN, 1_000.0, lands=True, flying=FlightClass(Performance(battery_wh=50.0), 10.0))]
     reach(FlownNetwork(network, graph, graph, zones, zones), flights, [], access)
 

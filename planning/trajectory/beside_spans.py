@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from inspection.network.spans import BESIDE_M, Spans, cell_of
+from inspection.network.spans import BESIDE_M, DECK, Spans, cell_of
 from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from planning.trajectory.waypoints import NONE, FloatArray, IntArray
 
@@ -188,7 +188,7 @@ def _beside(begin: int, end: int, points: _Points, clearance_m: float, on: _Colu
                 if share > until:
                     continue
                 target = own[begin]
-                if target != NONE and target == own[end]:
+                if target != NONE and target == own[end] and on.asset[span] != DECK:
                     is_along = asset[begin] != NONE and asset[begin] == on.asset[span]
                     if _is_own(target, begin, end, position, own, start[span], stop[span], is_along):
                         continue

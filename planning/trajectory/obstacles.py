@@ -1,4 +1,4 @@
-"""Towers, wires and catenaries beside and under a route: where a leg passes one too low, the UAV rises over it and comes down behind it."""
+"""Towers, wires, bridges beside and under a route: where a leg passes one too low, the UAV rises over it and comes down behind it."""
 
 from dataclasses import dataclass
 
@@ -64,7 +64,7 @@ def too_low(waypoints: Waypoints, spans: Spans, ground: GroundModel | None, rule
     place = np.concatenate([leg, point])
     ground_m = np.zeros((len(span), 2))
     if known is not None:
-        reported_m = known.heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
+        reported_m = known.heights_m(spans.ground_places(span)).reshape(2, -1).T
         ground_m = np.where(np.isnan(reported_m).any(axis=1, keepdims=True), ABOVE_ALL_M, reported_m)
     heights_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
     least_m = np.ascontiguousarray(ground_m + heights_m + rules.clearance_m)

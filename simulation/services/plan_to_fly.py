@@ -180,7 +180,9 @@ def _standing(plan: PlanToFly, ground: PlanningGround, terrain: Heights | None) 
     places = np.array([waypoint.position for route in plan.routes for waypoint in route.route.waypoints])
     near = _near(spans, places)
     start, end = spans.start[near], spans.end[near]
-    at_start, at_end = (_flat(start), _flat(end)) if terrain is None else (terrain(start), terrain(end))
+    at_start, at_end = (
+        (_flat(start), _flat(end)) if terrain is None else (terrain(spans.start_ground[near]), terrain(spans.end_ground[near]))
+    )
     start_m, end_m = _as_planned(start, spans.start_height_m[near], plan), _as_planned(end, spans.end_height_m[near], plan)
     return Standing(start, end, at_start + start_m, at_end + end_m)
 

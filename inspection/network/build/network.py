@@ -1,10 +1,12 @@
 """From the ground to the network: nodes and edges that depend on no zone."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inspection.network.build.decks import bridge_heights_m, decks
 from inspection.network.build.edges import Edges, cheapest_per_pair, component_labels, costs, edges_of, joined, lengths_m, without_seam
 from inspection.network.build.joining import JoinedVertices, join_vertices
 from inspection.network.build.links import bridge_links, crossing_links, railway_crossing_links
@@ -23,7 +25,8 @@ FloatArray = NDArray[np.float64]
 class Network:
     """n nodes and m undirected edges as if there were no zones. It lacks the links that are laid where zones leave room for them.
 
-    The arrays are those of InspectionGraph.
+    The arrays are those of InspectionGraph, and those of the decks of bridges: deck_line (k, 2, 2) from lon, lat [deg] to lon, lat, and
+    deck_height_m (k,) over the ground at deck_ground (k, 2). Several pieces lie on the same line, with heights over other places.
     """
 
     position: FloatArray
@@ -35,13 +38,20 @@ class Network:
     cost: FloatArray
     edge_kind: NDArray[np.uint8]
     edge_asset: IntArray
+    deck_line: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 2)))
+    deck_ground: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
+    deck_height_m: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         """Nobody writes to the arrays."""
-        for field in fields(self):
-            array = getattr(self, field.name)
+        for own in fields(self):
+            array = getattr(self, own.name)
             if array.flags.writeable:
-                object.__setattr__(self, field.name, read_only(array))
+                object.__setattr__(self, own.name, read_only(array))
+
+    def graph_arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays that an inspection graph has too."""
+        return {name: getattr(self, name) for name in GRAPH_FIELDS}
 
     @property
     def node_count(self) -> int:
@@ -50,6 +60,9 @@ class Network:
     @property
     def edge_count(self) -> int:
         return len(self.edge)
+
+
+GRAPH_FIELDS = [own.name for own in fields(Network) if not own.name.startswith("deck_")]
 
 
 @dataclass(frozen=True)
@@ -71,7 +84,9 @@ def network(ground: GroundData, rules: LinkingRules) -> Network:
 
     Nodes come in the order supports, line vertices, railway points, bridges.
     """
-    return put_together(*_nodes_and_edges(ground, rules), rules)
+    line, over, height_m = decks(ground.bridges.position, ground.bridges.height_m, ground.bridge_outlines)
+    bare = put_together(*_nodes_and_edges(ground, rules), rules)
+    return replace(bare, deck_line=line, deck_ground=over, deck_height_m=height_m)
 
 
 def put_together(edges: Edges, nodes: Nodes, rules: LinkingRules) -> Network:
@@ -130,7 +145,7 @@ def _nodes_and_edges(ground: GroundData, rules: LinkingRules) -> tuple[Edges, No
                 support_heights_m(ground.supports, ground.lines, on_lines),
                 ground.lines.height_m[vertices],
                 ground.railways.height_m[railways.way],
-                ground.bridges.height_m,
+                bridge_heights_m(ground.bridges.height_m, ground.bridge_outlines),
             ]
         ),
     )

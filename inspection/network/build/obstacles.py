@@ -1,4 +1,4 @@
-"""What cannot be flown over, and so has to be gone round: towers and wires too tall for the highest flight, or tall under a zone."""
+"""What cannot be flown over, and so has to be gone round: towers, wires, bridges too tall for the highest flight, or tall under a zone."""
 
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from inspection.network.build.network import Network
 from inspection.network.rules import FlownHeights
-from inspection.network.spans import BESIDE_M, hung_between
+from inspection.network.spans import BESIDE_M, NO_NODE, hung_between
 from inspection.network.zones.zone_index import ZoneIndex, plane_scale
 
 NO_ZONE = -1  # in place of a zone's primary key
-WALL = f"the {BESIDE_M:.0f} m around a mast or wires that cannot be flown over"
+WALL = f"the {BESIDE_M:.0f} m around a mast, wires or a bridge that cannot be flown over"
 CORNERS = 4  # of a quarter circle
 ROUNDER = 1.02  # makes the chords of such a quarter circle clear the true one
 
@@ -84,8 +84,8 @@ def obstacles_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.boo
 
 def _obstacles(network: Network, heights: FlownHeights) -> Geometries:
     tallest_m = heights.max_agl_m - heights.clearance_m
-    pairs, heights_m, _ = hung_between(network, tallest_m)
-    start, along = network.position[pairs[:, 0]], network.position[pairs[:, 1]] - network.position[pairs[:, 0]]
+    hung = hung_between(network, tallest_m)
+    heights_m, start, along = hung.heights_m, hung.line[:, 0], hung.line[:, 1] - hung.line[:, 0]
     begin, until = _above(heights_m[:, 0], heights_m[:, 1], tallest_m)
     is_round = np.column_stack([begin == 0.0, until == 1.0])
     return obstacles_along(start + begin[:, None] * along, start + until[:, None] * along, is_round)
@@ -103,15 +103,16 @@ def low_ceilings(network: Network, zones: ZoneIndex, heights: FlownHeights, clea
     aloft = zones.where(zones.floor_agl_m > heights.transit_agl_m + heights.above_m)
     if not len(aloft):
         return NO_CEILINGS
-    pairs, heights_m, _ = hung_between(network, heights.transit_agl_m - heights.clearance_m)
-    start, end = network.position[pairs[:, 0]], network.position[pairs[:, 1]]
-    high_m = heights_m.max(axis=1, initial=0.0) + heights.clearance_m + heights.above_m
+    hung = hung_between(network, heights.transit_agl_m - heights.clearance_m)
+    start, end = hung.line[:, 0], hung.line[:, 1]
+    high_m = hung.heights_m.max(axis=1, initial=0.0) + heights.clearance_m + heights.above_m
     low_m, wide_m = np.full(len(start), heights.transit_agl_m - heights.below_m), clearance_m + BESIDE_M * ROUNDER
     met, hangs = np.zeros(len(start), dtype=bool), (start != end).any(axis=1)
     met[hangs] = aloft.meets(start[hangs], end[hangs], wide_m, low_m[hangs], high_m[hangs])
     met[~hangs] = aloft.contains(start[~hangs], wide_m, low_m[~hangs], high_m[~hangs])
     obstacles = obstacles_along(start[met], end[met], np.ones((int(met.sum()), 2), dtype=bool))
-    return LowCeilings(obstacle_index_of(obstacles), np.unique(pairs[met]))
+    nodes = hung.nodes[met]
+    return LowCeilings(obstacle_index_of(obstacles), np.unique(nodes[nodes != NO_NODE]))
 
 
 NO_CEILINGS = LowCeilings(obstacle_index_of(np.zeros(0, dtype=object)), np.zeros(0, dtype=np.int64))

@@ -64,7 +64,12 @@ def masked(
     round_zones = detours([*wanted, *to_tower.unlinked, *to_railway.unlinked], flown, barred, rules, heights)
     whole = put_together(joined(edges, round_zones.edges()), _with_bends(nodes, round_zones.bend), rules)
     graph = InspectionGraph(
-        version=version, ground_revision=ground_revision, **vars(whole), zone_wkb=zones.wkb, zone_id=zones.ids, zone_name=zones.names
+        **whole.graph_arrays(),
+        version=version,
+        ground_revision=ground_revision,
+        zone_wkb=zones.wkb,
+        zone_id=zones.ids,
+        zone_name=zones.names,
     )
     components, _ = component_labels(graph.node_count, graph.edge)
     return MaskedGraph(graph, components, excluded_nodes, excluded_edges + to_tower.blocked + to_railway.blocked)

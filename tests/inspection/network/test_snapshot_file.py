@@ -13,7 +13,7 @@ from shapely import box
 
 from inspection.network import snapshot_file
 from inspection.network.build.flyable import flyable_part
-from inspection.network.build.network import Network
+from inspection.network.build.network import GRAPH_FIELDS, Network
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachment
 from inspection.network.paths.paths import travel_between
@@ -45,7 +45,7 @@ RULES, HEIGHTS = LinkingRules(), FlownHeights()
 
 
 def network_of(graph: InspectionGraph) -> Network:
-    return Network(**{field.name: getattr(graph, field.name) for field in fields(Network)})
+    return Network(**{name: getattr(graph, name) for name in GRAPH_FIELDS})
 
 
 def hash_of(content: bytes) -> str:

@@ -1,22 +1,25 @@
-"""Towers and wires beside a route: it rises over them, and nothing else changes."""
+"""Towers, wires and bridges beside a route: it rises over them, and nothing else changes."""
 
 import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat
-from inspection.network.spans import Spans, spans_between
+from inspection.network.build.decks import decks
+from inspection.network.infrastructure import BridgeOutlines
+from inspection.network.spans import DECK, Spans, spans_between
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
 from planning.rules import FlightRules
 from planning.task import Task, TaskKind
 from planning.trajectory.beside_spans import AT_M
 from planning.trajectory.heights import with_heights
 from planning.trajectory.obstacles import rising_over, too_low
-from planning.trajectory.waypoints import NONE, RoutePoint, RoutePoints, WaypointKind, Waypoints
+from planning.trajectory.waypoints import NONE, TARGET, RoutePoint, RoutePoints, WaypointKind, Waypoints
 from tests.planning.trajectory.posted_ground import PostedGround, ground_like
 
 HERE = 56.0
@@ -211,6 +214,60 @@ def test_over_rough_ground_a_risen_route_keeps_the_clearance_and_the_limit(
     steps = flown.points.position[:-1, None] + np.linspace(0.0, 1.0, 100)[:, None] * np.diff(flown.points.position, axis=0)[:, None]
     levels_m = flown.amsl_m[:-1, None] + np.linspace(0.0, 1.0, 100) * np.diff(flown.amsl_m)[:, None]
     assert (levels_m.ravel() - ground.metres(steps.reshape(-1, 2))).max() <= RULES.max_agl_m + 0.1
+
+
+BANKS_M = st.floats(100.0, 140.0)
+BRIDGES = st.tuples(st.floats(-100.0, 500.0), st.floats(60.0, 300.0), st.floats(4.0, 40.0), st.floats(0.0, math.pi))
+
+
+@settings(max_examples=100)
+@given(PLACES, BRIDGES, BANKS_M, st.sampled_from([math.nan, 35.0, 60.0]))
+def test_no_leg_leads_under_a_deck_or_low_over_it(
+    places: list[tuple[float, float, float]], drawn_bridge: tuple[float, float, float, float], bank_m: float, tagged_m: float
+) -> None:
+    """A bridge over a valley at 100 m above the sea between banks of up to 140 m: looked at every 2 m against its deck."""
+    north_m, half_m, wide_m, turn = drawn_bridge
+    along = np.array([math.sin(turn), math.cos(turn)])  # east, north
+    across = along[::-1] * (1.0, -1.0)
+    corners = [end * half_m * along + side * wide_m / 2.0 * across for end, side in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    area = shapely.Polygon([(10.0 + x * EAST_DEG, HERE + (north_m + y) * METRE_DEG) for x, y in corners])
+    centre = np.array([at(north_m, 0.0)])
+
+    def from_centre_m(position: np.ndarray) -> np.ndarray:
+        return np.hypot((position[:, 0] - 10.0) / EAST_DEG, (position[:, 1] - centre[0, 1]) / METRE_DEG)
+
+    ground = ground_like(lambda position: np.where(from_centre_m(position) > 0.8 * half_m, bank_m, 100.0), 9.96, HERE + 0.02, 0.08, 0.0003)
+    line, over, height_m = decks(centre, np.array([tagged_m]), BridgeOutlines(np.array([area], dtype=object), np.array([False])))
+    deck = spans_between(line[:, 0], line[:, 1], height_m, height_m, np.full(len(line), DECK), (over, over))
+    points = RoutePoints.of([RoutePoint(at(north, east), WaypointKind.PASS, agl_m) for north, east, agl_m in places])
+    followed, is_flat = with_heights(points, ground.ground, RULES)
+    assert not is_flat
+    flown, blocked = rising_over(followed, deck, ground.ground, RULES)
+    if blocked:
+        return
+    assert spans_too_near(flown, deck, ground.ground.heights_m, RULES) == set()
+    assert flown.amsl_m is not None
+    ends = np.array([at(north_m + side * half_m * along[1], side * half_m * along[0]) for side in (-1.0, 1.0)])
+    if np.isnan(tagged_m):
+        top_m = float(ground.metres(ends).max()) + 30.0
+    else:
+        top_m = max(float(ground.metres(ends).max()) + 12.0, float(ground.metres(centre)[0]) + tagged_m)
+    steps = flown.points.position[:-1, None] + np.linspace(0.0, 1.0, 400)[:, None] * np.diff(flown.points.position, axis=0)[:, None]
+    levels_m = (flown.amsl_m[:-1, None] + np.linspace(0.0, 1.0, 400) * np.diff(flown.amsl_m)[:, None]).ravel()
+    metres = (steps.reshape(-1, 2) - (10.0, HERE)) / (EAST_DEG, METRE_DEG)
+    on_map = shapely.Polygon([(x, north_m + y) for x, y in corners])
+    is_over = shapely.distance(shapely.points(metres), on_map) < 23.0
+    assert float((levels_m[is_over] - top_m).min(initial=math.inf)) >= RULES.clearance_m - 1.0
+
+
+def test_what_is_inspected_on_a_deck_is_come_down_to_from_above_and_nothing_is_inspected_below() -> None:
+    """Over the end of a piece of a deck, at 29 m where 45 + 15 are needed: a wire that hangs there would be excused."""
+    own = spans((200.0, 0.0, 45.0, 200.0, 90.0, 45.0), asset=DECK)
+    assert spans_too_near(inspected(29.0), own, None, RULES) == {0}
+    flown, blocked = rising_over(inspected(29.0), own, None, RULES)
+    assert blocked == ()
+    assert spans_too_near(flown, own, None, RULES) == set()
+    assert flown.points.agl_m[flown.points.kind == TARGET].min() >= 60.0 - 0.5
 
 
 def shortest_over(position: np.ndarray, level_m: np.ndarray, rows: list[tuple[float, ...]]) -> float:
