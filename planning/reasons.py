@@ -98,8 +98,8 @@ SENTENCES = register_sentences(
         "battery_too_small": gettext_noop("The battery of %(any_uav)s is too small for it."),
         "battery_too_small_with_charging": gettext_noop("Even with charging stops, the battery of %(any_uav)s is too small for it."),
         "in_reach_alone": gettext_noop("Reachable on its own, but not together with the other targets."),
-        "wires_in_the_way": gettext_noop("%(uav)s would have to pass a mast or wires that cannot be flown over."),
-        "wires_after_others": gettext_noop("From its other targets %(uav)s would have to pass a mast or wires that cannot be flown over."),
+        "wires_in_the_way": gettext_noop("%(uav)s would have to pass a mast, wires or a bridge that cannot be flown over."),
+        "wires_after_others": gettext_noop("From its other targets %(uav)s would have to pass a mast, wires or a bridge that cannot be flown over."),
         "other_uavs": gettext_noop("Other UAVs: %(limits)s."),
         # why a UAV stays on the ground, and of what else a plan warns
         "uav_retired": gettext_noop("%(uav)s is retired and flies no more."),
@@ -136,13 +136,13 @@ SENTENCES = register_sentences(
         "there_and_back": gettext_noop("there and back"),
         "there_and_to_base": gettext_noop("there and on to the nearest base"),
         "zone_margin": gettext_noop("the %(margin_m)s around a no-fly zone"),
-        "obstacle_margin": gettext_noop("the surroundings of a mast or wires that cannot be flown over"),
+        "obstacle_margin": gettext_noop("the surroundings of a mast, wires or a bridge that cannot be flown over"),
         "cannot_take_off": gettext_noop("cannot take off (%(uavs)s)"),
         "without_sensor": gettext_noop("without the sensor (%(uavs)s)"),
         "no_permitted_route": gettext_noop("no permitted route (%(uavs)s)"),
         "wind_too_strong_for": gettext_noop("wind too strong (%(uavs)s)"),
         "range_too_short": gettext_noop("range too short (%(uavs)s)"),
         "battery_too_small_of": gettext_noop("battery too small (%(uavs)s)"),
-        "wires_for": gettext_noop("mast or wires in the way (%(uavs)s)"),
+        "wires_for": gettext_noop("mast, wires or bridge in the way (%(uavs)s)"),
     }
 )

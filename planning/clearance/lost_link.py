@@ -38,7 +38,7 @@ class ReturnTrouble(StrEnum):
     WIND = "wind"
     ZONE = "zone"
     TOO_HIGH = "too_high"  # what clears the ground is above the greatest height somewhere on the way
-    OBSTACLE = "obstacle"  # what clears a mast or wires is, and would not be without them
+    OBSTACLE = "obstacle"  # what clears a mast, wires or a bridge is, and would not be without them
     UNKNOWN_GROUND = "unknown_ground"
 
 

@@ -128,7 +128,7 @@ def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[Re
 
 
 def _ground(mission: Mission) -> Iterator[RefusalReason]:
-    """Yield reasons from current zones, bases, assets and terrain, and from masts and wires beside the routes."""
+    """Yield reasons from current zones, bases, assets and terrain, and from masts, wires and bridges beside the routes."""
     for cause in causes_on_the_routes(mission, uav_changes(mission.pk)):
         yield RefusalReason(f"{cause.what}_changed" if cause.what != "zone" else "zone", cause.message, cause.uav)
     routes = stored_routes(mission)
@@ -137,7 +137,7 @@ def _ground(mission: Mission) -> Iterator[RefusalReason]:
         return
     names = [row.name for row in mission.mission_uavs.all()]
     for number in sorted(spans_in_the_way(routes, planning_read().ground().network(), ground_heights_m, settings.FLIGHT_RULES)):
-        words = _("The route of %(uav)s passes a mast or wires too near.") % {"uav": names[number]}
+        words = _("The route of %(uav)s passes a mast, wires or a bridge too near.") % {"uav": names[number]}
         yield RefusalReason("wires", words, number)
 
 

@@ -160,7 +160,7 @@ def _wire_faults(flown: PlannedRoute, ground: ManualEditContext) -> dict[str, st
     assert flown.waypoints is not None  # noqa: S101 - set by the drawing
     heights = None if flown.is_flat or ground.terrain is None else ground.terrain.heights_m
     near = spans_too_near(flown.waypoints, spans_of(ground.network), heights, settings.FLIGHT_RULES)
-    return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
+    return {"waypoints": _("The route passes a mast, wires or a bridge too near.")} if near else {}
 
 
 def _least_agl_m(waypoint: KeptWaypoint, network: Network, node_heights_m: Mapping[int, float]) -> float:

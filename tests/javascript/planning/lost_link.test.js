@@ -153,7 +153,7 @@ test("how high UAVs have to climb for the way back is told, and a mast in the wa
   const [barred] = link.failuresOf(planWith({ ...back, failed: [failed(1, "obstacle", { over_m: 5 })] }));
   assert.equal(
     spaces(link.failureText(barred).why),
-    "a mast or wires are in the way: over them it would be 5 m above the greatest allowed height",
+    "a mast, wires or a bridge is in the way: over it the path would be 5 m above the greatest allowed height",
   );
 });
 

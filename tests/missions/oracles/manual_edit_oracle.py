@@ -129,7 +129,7 @@ class ManualEditOracle:
             return self._is_too_low(drawn["waypoints"], int(rest.split(".")[0]), is_leg=what == "legs")
         if what == "legs":
             return self._is_true_of_leg(asked, drawn, int(rest), stated)
-        if "mast or wires" in stated:
+        if "mast, wires or a bridge" in stated:
             return bool(self.judge.wires.faults({"routes": [drawn]}))
         if "range" in stated:
             return uav.max_range_m is not None and max(flights_m(drawn["waypoints"])) > 0.99 * uav.max_range_m

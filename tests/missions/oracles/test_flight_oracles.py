@@ -353,7 +353,7 @@ def test_why_a_change_by_hand_is_refused_is_judged() -> None:
     assert is_true(through, "legs.1", "This leg meets Hospital.")
     assert not is_true(through, "legs.2", "This leg meets Hospital.")
     assert not is_true(wished, "legs.0", "This leg meets Hospital.")
-    assert not is_true(wished, "waypoints", "The route passes a mast or wires too near.")
+    assert not is_true(wished, "waypoints", "The route passes a mast, wires or a bridge too near.")
     assert not is_true(wished, "legs.0", "Something tall stands here: fly at 105 m above ground over it.")
     assert not is_true(wished, "waypoints", "The battery of Tern lacks 5.0 Wh for this.")
     assert not is_true(wished, "waypoints", "This is 2.0 km; the range of Tern is 1.0 km.")

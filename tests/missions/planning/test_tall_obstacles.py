@@ -246,5 +246,5 @@ def test_a_uav_keeps_to_its_first_targets_where_the_way_on_leads_over_what_is_to
     plan = make_plan(request=request(here.towers[1], here.towers[3], beside))
     stated = {item["target"]: item["message"] for item in plan["unassigned"]}
     assert plan["routes"][0]["targets"] == [0]
-    assert stated[1] == "From its other targets Tern would have to pass a mast or wires that cannot be flown over."
+    assert stated[1] == "From its other targets Tern would have to pass a mast, wires or a bridge that cannot be flown over."
     assert WireJudge(ground_heights_m).faults(plan) == []

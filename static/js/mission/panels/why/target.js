@@ -11,11 +11,11 @@ import { showLegalTimes } from "../options/legal_times.js";
 /** @import { MissionActions, MissionStore, PickedTarget, ShownPlan } from "../../types.d.ts" */
 /** @import { Explaining } from "./route.js" */
 
-const WALL = /^the \S+ m around a mast or wires that cannot be flown over$/;
+const WALL = /^the \S+ m around a mast(?: or wires|, wires or a bridge) that cannot be flown over$/;
 
 /** A zone's name in the reader's language, where it is no name but a description. @param {string} words */
 function zoneOf(words) {
-  if (WALL.test(words)) return t("the surroundings of a mast or wires that cannot be flown over");
+  if (WALL.test(words)) return t("the surroundings of a mast, wires or a bridge that cannot be flown over");
   return /^the \S+ m around a no-fly zone$/.test(words) ? t("the margin round a no-fly zone") : words;
 }
 
