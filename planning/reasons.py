@@ -99,7 +99,9 @@ SENTENCES = register_sentences(
         "battery_too_small_with_charging": gettext_noop("Even with charging stops, the battery of %(any_uav)s is too small for it."),
         "in_reach_alone": gettext_noop("Reachable on its own, but not together with the other targets."),
         "wires_in_the_way": gettext_noop("%(uav)s would have to pass a mast, wires or a bridge that cannot be flown over."),
-        "wires_after_others": gettext_noop("From its other targets %(uav)s would have to pass a mast, wires or a bridge that cannot be flown over."),
+        "wires_after_others": gettext_noop(
+            "From its other targets %(uav)s would have to pass a mast, wires or a bridge that cannot be flown over."
+        ),
         "other_uavs": gettext_noop("Other UAVs: %(limits)s."),
         # why a UAV stays on the ground, and of what else a plan warns
         "uav_retired": gettext_noop("%(uav)s is retired and flies no more."),

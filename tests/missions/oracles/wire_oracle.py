@@ -55,6 +55,7 @@ class WireJudge:
         self.asset = dict(hangs)
         if ground is not None:
             self.top_m = self.top_m + np.column_stack([ground(np.array([wire[side] for wire in wires])) for side in (0, 1)])
+        self.decks = [deck for row in rows if row.kind == "bridge" for deck in self._decks(row)]
         self.tree = shapely.STRtree([shapely.LineString([a, b]) if a != b else shapely.Point(a) for a, b in self._ends()])
         self.passed = 0
 
@@ -89,6 +90,8 @@ class WireJudge:
             if "base" in {one["kind"], other["kind"]}:
                 continue  # up from the ground, or down to it
             line = shapely.LineString(places[leg : leg + 2]) if (places[leg] != places[leg + 1]).any() else shapely.Point(places[leg])
+            if (one["task"] or {}).get("view") is None and (other["task"] or {}).get("view") is None:
+                yield from self._low_over_decks(f"{route['uav']}: leg {leg}", places[leg : leg + 2], level_m[leg : leg + 2])
             target = self._target(one, other, line)
             at_target = [waypoint for waypoint in waypoints if target is not None and waypoint["target"] == target]
             own = self._metres(np.array([waypoint["position"] for waypoint in at_target]).reshape(-1, 2))
@@ -98,6 +101,35 @@ class WireJudge:
                 short_m = self._short_m(places[leg], places[leg + 1], level_m[leg], level_m[leg + 1], wire)
                 if short_m > ROUNDING_M and not self._is_inspected(own, assets, wire):
                     yield f"{route['uav']}: leg {leg} at {one['position']} is {short_m:.1f} m too low over {self.top_m[wire].tolist()}"
+
+    def _decks(self, row: Asset) -> Iterator[tuple[Any, float]]:
+        """The area of a bridge and the height of what stands on it: 30 m over its centre and ends; as stated, and 12 m, respectively."""
+        area = shapely.from_wkb(bytes(row.geometry.wkb))
+        metres = shapely.transform(area, self._metres)
+        corners = shapely.get_coordinates(metres.minimum_rotated_rectangle)
+        height_m = self._height(row)
+        if len(corners) < 5 or area.geom_type == "LineString":
+            return
+        sides_m = [math.dist(corners[0], corners[1]), math.dist(corners[1], corners[2])]
+        around = [(1, 2, 3, 0), (0, 1, 2, 3)][sides_m[1] > sides_m[0]]  # the corners of one short side, then of the other
+        ends = [(corners[around[at]] + corners[around[at + 1]]) / 2.0 for at in (0, 2)]
+        if self.ground is None:
+            yield metres, height_m
+        elif max(sides_m) > 1.1 * min(sides_m):
+            at_m = self.ground(np.array([row.centre.coords, *(self._degrees(end) for end in ends)]))
+            yield metres, float(max(at_m[0] + height_m, at_m[1:].max() + (height_m if row.height_m is None else min(height_m, 12.0))))
+
+    def _low_over_decks(self, leg: str, places: Any, level_m: list[float]) -> Iterator[str]:
+        share = np.linspace(0.0, 1.0, int(math.dist(*places) / STEP_M) + 2)
+        line = shapely.LineString(places) if (places[0] != places[1]).any() else shapely.Point(places[0])
+        for area, top_m in self.decks:
+            if shapely.distance(area, line) > BESIDE_M - 1.0:
+                continue
+            at = places[0] + share[:, None] * (places[1] - places[0])
+            is_over = shapely.distance(area, shapely.points(at)) <= BESIDE_M - 1.0
+            over_m = (level_m[0] + share * (level_m[1] - level_m[0]) - top_m)[is_over].min(initial=math.inf)
+            if over_m < CLEARANCE_M - ROUNDING_M:
+                yield f"{leg} is {CLEARANCE_M - over_m:.1f} m too low over a bridge"
 
     def _short_m(self, start: Any, end: Any, start_m: float, end_m: float, wire: int) -> float:
         share = np.linspace(0.0, 1.0, int(math.dist(start, end) / STEP_M) + 2)
@@ -144,6 +176,10 @@ class WireJudge:
     def _metres(self, places: Any) -> Any:
         degree_m = math.radians(1.0) * EARTH_M
         return (np.asarray(places)[:, :2] - self.origin) * (degree_m * math.cos(math.radians(self.origin[1])), degree_m)
+
+    def _degrees(self, place: Any) -> Any:
+        degree_m = math.radians(1.0) * EARTH_M
+        return place / (degree_m * math.cos(math.radians(self.origin[1])), degree_m) + self.origin
 
 
 def _vertices(row: Asset) -> list[tuple[float, ...]]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from django.contrib.gis.geos import MultiPolygon, Polygon
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, NoFlyZone
@@ -186,6 +187,44 @@ def test_a_wire_too_high_over_a_valley_is_gone_round_or_the_target_left_out(tmp_
     assert all(waypoint["altitude_agl_m"] <= 120.0 for route in plan["routes"] for waypoint in route["waypoints"])
     assert plan["unassigned"] == []
     assert plan["total_length_m"] > 500.0  # straight it is some 400 m
+
+
+def viaduct(**facts: Any) -> Asset:
+    """A bridge from bank to bank of the valley, 500 m long and 12 m wide, across the way from the UAV to the line of the world."""
+    area = Polygon.from_bbox((9.997, 55.99745, 10.005, 55.99755))
+    bridge = ground.bridge((10.001, 55.9975), **facts)
+    Asset.objects.filter(pk=bridge.pk).update(geometry=MultiPolygon(area, srid=4326))
+    rebuild()
+    return bridge
+
+
+def test_over_a_valley_a_leg_beside_the_middle_of_a_bridge_rises_over_its_deck(tmp_path: Path) -> None:
+    """The deck lies 50 m over the valley, and counts as 30 m over its banks: 95 m over the ground are needed in the middle."""
+    here = world()
+    valley(tmp_path / "valley.tif")
+    way = request(here.towers[0], uavs=(uav((10.0005, 55.9965)),))
+    plain = make_plan(request=way)
+    viaduct()
+    assert any("too low over a bridge" in fault for fault in WireJudge(ground_heights_m).faults(plain))
+    plan = make_plan(request=way)
+    assert plan["unassigned"] == []
+    assert WireJudge(ground_heights_m).faults(plan) == []
+    assert max(waypoint["altitude_agl_m"] for waypoint in plan["routes"][0]["waypoints"]) > 85.0
+
+
+def test_a_bridge_with_pylons_of_unknown_height_is_gone_round_until_it_is_stated() -> None:
+    here = world()
+    tagged = viaduct(tags={"bridge:structure": "suspension"})
+    way = request(here.towers[0], uavs=(uav((10.001, 55.9965)),))
+    plan = make_plan(request=way)
+    assert plan["unassigned"] == []
+    assert plan["total_length_m"] > 600.0  # straight it is some 400 m
+    Asset.objects.filter(pk=tagged.pk).update(height_m=80.0)
+    rebuild()
+    plan = make_plan(request=way)
+    assert plan["total_length_m"] < 500.0
+    assert WireJudge().faults(plan) == []
+    assert max(waypoint["altitude_agl_m"] for waypoint in plan["routes"][0]["waypoints"]) == pytest.approx(95.0)
 
 
 @pytest.mark.parametrize(("volts", "least_m"), [(380_000, 75.0), (110_000, 60.0)])
