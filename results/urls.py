@@ -12,6 +12,7 @@ from results.views.findings import (
     FindingHistory,
     FindingList,
     FindingObservations,
+    FindingsLookAgain,
 )
 from results.views.media import MediaList, MediaLookup, MediaUsed, MediumDetail, MediumFile, MediumPreview
 from results.views.uploads import MediaUploadDetail, MediaUploads
@@ -43,6 +44,7 @@ urlpatterns = [
     path("finding-categories", FindingCategories.as_view(), name="api-finding-categories"),
     path("findings", FindingList.as_view(), name="api-findings"),
     path("findings.<finding_kind:kind>", FindingFile.as_view(), name="api-finding-file"),
+    path("findings/look-again", FindingsLookAgain.as_view(), name="api-findings-look-again"),
     path("findings/<uuid:finding_id>", FindingDetail.as_view(), name="api-finding"),
     path("findings/<uuid:finding_id>/evidence", FindingEvidence.as_view(), name="api-finding-evidence"),
     path("findings/<uuid:finding_id>/evidence/<int:evidence_id>", FindingEvidenceDetail.as_view(), name="api-finding-evidence-detail"),

@@ -36,29 +36,37 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "", targets: 
     """
     if mission.state not in ENDED_STATES:
         raise refuse("not_over", _("A follow-up is planned once the mission is over."))
-    asked = request_of_mission(mission=mission)
     taken_over = {_what(target) for target in InspectionTarget.objects.filter(mission__continues=mission, mission__deleted_at=None)}
-    missed = tuple(
-        wish
-        for wish, target in zip(asked.targets, mission.targets.all(), strict=True)
+    missed = {
+        target.sequence
+        for target in mission.targets.all()
         if (target.sequence in targets if targets is not None else target.state != TargetState.COMPLETE) and _what(target) not in taken_over
-    )
+    }
     if not missed:
         none = _("No target of this mission was missed.") if targets is None else _("None of these targets is left to this mission.")
         raise refuse("nothing_missed", none)
-    original = mission.simulates
-    if original is not None:
-        asked, missed = _for_the_uavs_themselves(asked, missed, original)
-    uavs = tuple(replace(uav, position=uav.returns_to, home=None) for uav in asked.uavs)
-    work = mission if original is None else original
+    work = mission if mission.simulates is None else mission.simulates
     return create_mission(
         organisation=mission.organisation,
         author=author,
         name=(name or _("{name} – follow-up").format(name=mission.name[: MAX_NAME_LENGTH - 20]))[:MAX_NAME_LENGTH],
-        request=replace(asked, uavs=uavs, targets=missed, locks=(), departs_at=None),
+        request=request_again(mission, missed),
         external_id=work.external_id,
         attributes=work.attributes,
     )
+
+
+def request_again(mission: Mission, places: Collection[int]) -> PlanRequest:
+    """Return the request for some targets of a mission, by their places, with its UAVs and constraints, without departure and locks.
+
+    UAVs begin where they return to; those of a simulated copy are the UAVs themselves.
+    """
+    asked = request_of_mission(mission=mission)
+    wishes = tuple(wish for wish, target in zip(asked.targets, mission.targets.all(), strict=True) if target.sequence in places)
+    if mission.simulates is not None:
+        asked, wishes = _for_the_uavs_themselves(asked, wishes, mission.simulates)
+    uavs = tuple(replace(uav, position=uav.returns_to, home=None) for uav in asked.uavs)
+    return replace(asked, uavs=uavs, targets=wishes, locks=(), departs_at=None)
 
 
 def _for_the_uavs_themselves(

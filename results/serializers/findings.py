@@ -16,6 +16,7 @@ from workspace.models import User
 STATES = [state.value for state in FindingState]
 SHAPES = ("box", "polygon")
 MAX_POINTS = 200
+MAX_LOOKED_AT = 500  # findings of one mission
 MAX_PIXEL = 1e6
 
 
@@ -75,6 +76,11 @@ class ObservationInputSerializer(serializers.Serializer):
 
 class CommentInputSerializer(serializers.Serializer):
     text = serializers.CharField(max_length=MAX_NOTE_LENGTH)
+
+
+class LookAgainSerializer(serializers.Serializer):
+    findings = serializers.ListField(child=serializers.UUIDField(), allow_empty=False, max_length=MAX_LOOKED_AT)
+    name = serializers.CharField(max_length=200, required=False, allow_blank=True, help_text="of the mission; without one: after the asset")
 
 
 class EvidenceSerializer(answers.Serializer):

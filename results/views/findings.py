@@ -17,6 +17,9 @@ from rest_framework.views import APIView
 from inspection.models import Asset
 from inspection.views.parameters import invalid
 from missions.serializers.changes import HistoryEntrySerializer, HistoryPageSerializer
+from missions.serializers.shapes import MissionSerializer
+from missions.views.missions import answer_mission
+from missions.views.problems import api_problems
 from results.categories import BY_CODE, SCHEME
 from results.finding_states import FindingState
 from results.models import Finding, Medium
@@ -34,6 +37,7 @@ from results.services.findings import (
     observe_finding,
     remove_evidence,
 )
+from results.services.look_again import draft_look_again
 from results.views.media import ASSET, uuid_of
 from results.views.subjects import subject_of
 from workspace.api.errors import ApiProblem
@@ -99,6 +103,28 @@ class FindingList(APIView):
                 actor=request.user, marks=marks, mission=subject.mission, target=subject.target, asset=subject.asset, **values
             )
         return _answer(request, finding.pk, status=201)
+
+
+class FindingsLookAgain(APIView):
+    @extend_schema(
+        operation_id="look_again_at_findings",
+        summary="A draft mission that looks at findings again",
+        description="Of the targets on which they were made, each once, with the tasks, photos and UAVs of then; of a finding without one, "
+        "its asset. A finding that is done is verified by these photos.",
+        request=shapes.LookAgainSerializer,
+        responses={201: MissionSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: SignedInRequest) -> Response:
+        body = shapes.LookAgainSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        asked = list(dict.fromkeys(body.validated_data["findings"]))
+        rows = findings_of_organisation(request.user.organisation_id).in_bulk(asked)
+        if len(rows) < len(asked):
+            raise invalid("findings", _("There is no such finding."))
+        with finding_problems(), api_problems():
+            draft = draft_look_again(findings=[rows[key] for key in asked], actor=request.user, name=body.validated_data.get("name", ""))
+        return answer_mission(request.user, draft.pk, status=201)
 
 
 class FindingDetail(APIView):

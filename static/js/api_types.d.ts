@@ -3818,6 +3818,11 @@ export interface components {
             /** @default false */
             at_end: boolean;
         };
+        LookAgainRequest: {
+            findings: string[];
+            /** @description of the mission; without one: after the asset */
+            name?: string;
+        };
         LookupInputRequest: {
             /** @description references, names, keys of a file, or OSM ids such as w123; case and spaces do not count */
             refs: string[];
@@ -10109,6 +10114,7 @@ export type LiveUav = components['schemas']['LiveUav'];
 export type Loaded = components['schemas']['Loaded'];
 export type LoadedDoubtEnum = components['schemas']['LoadedDoubtEnum'];
 export type LockRequest = components['schemas']['LockRequest'];
+export type LookAgainRequest = components['schemas']['LookAgainRequest'];
 export type LookupInputRequest = components['schemas']['LookupInputRequest'];
 export type LookupOutput = components['schemas']['LookupOutput'];
 export type LookupResult = components['schemas']['LookupResult'];

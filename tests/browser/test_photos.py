@@ -1,5 +1,6 @@
 """From a folder of photos to findings on an asset: dropped on a report, reviewed by keys, found again on the asset's record."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,10 @@ def test_photos_are_sent_reviewed_by_keys_and_found_on_their_asset(visitor: Visi
     page.get_by_text(label, exact=True).first.click()
     expect(page.locator("#record-show .finding-list li")).to_have_count(2)
     expect(page.locator("#record-show .photo-thumb")).to_have_count(3)
+    page.get_by_role("button", name="Look again at 2 findings").click()
+    expect(page).to_have_title(re.compile(re.escape(f"Look again: {label}")))
+    [again] = asks(page, f"/missions/{page.url.rpartition('/')[2].split('?')[0]}")["targets"]
+    assert again["asset"] == first["asset"]
     visitor.complaints[:] = [words for words in visitor.complaints if "422" not in words]  # the file that is no photo
 
 

@@ -166,7 +166,7 @@ function missionRow(mission) {
 export function resultsPart({ id }, { canPlan }) {
   const findings = h("div", {}, h("div", { class: "skeleton" }));
   const photos = h("div", {});
-  mountFindings(findings, `asset=${id}`);
+  mountFindings(findings, `asset=${id}`, { canPlan });
   mountPhotos(photos, { query: `asset=${id}`, stated: { asset: id }, canUpload: canPlan });
   return h(
     "div",

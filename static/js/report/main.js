@@ -368,7 +368,7 @@ mountPhotos(byId("report-photos-body"), {
     byId("report-photos-count").textContent = count ? `${numberText(count)}${isMore ? "+" : ""}` : "";
   },
 });
-mountFindings(byId("report-findings"), `mission=${page.mission}`);
+mountFindings(byId("report-findings"), `mission=${page.mission}`, { canPlan: page.canFly });
 await Promise.all([map.ready, read()]);
 show();
 document.documentElement.dataset.loaded = "true";

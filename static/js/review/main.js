@@ -4,7 +4,7 @@ import { ApiError, freshKey, get, patch, post, remove } from "../api.js";
 import { byId, h, icon, setChildren, term } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { announce, toast } from "../page/toast.js";
-import { severityMark } from "../photos/findings_list.js";
+import { lookAgain, severityMark } from "../photos/findings_list.js";
 import { thumbnail } from "../photos/section.js";
 import { FINDING_STATES, PLACEMENTS, SEVERITIES, sizeText } from "../photos/words.js";
 import { t } from "../text.js";
@@ -200,6 +200,7 @@ function drawFindings() {
           { class: "caption" },
           shown.review === "nothing" ? t("Nothing to see here.") : t("No findings on this photo."),
         ),
+    page.canPlan && lookAgain(findings),
   );
   picture.mark(
     findings.flatMap((finding) =>

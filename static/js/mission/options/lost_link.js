@@ -216,9 +216,12 @@ export function failureText({ waypoints, return_point, trouble, zone, missing_wh
     too_high: t("the way back would be {height} above the greatest allowed height", {
       height: exactHeightText(over_m),
     }),
-    obstacle: t("a mast, wires or a bridge is in the way: over it the path would be {height} above the greatest allowed height", {
-      height: exactHeightText(over_m),
-    }),
+    obstacle: t(
+      "a mast, wires or a bridge is in the way: over it the path would be {height} above the greatest allowed height",
+      {
+        height: exactHeightText(over_m),
+      },
+    ),
     unknown_ground: t("the ground under the way back is not known"),
   }[trouble];
   return { where, why };
