@@ -2,6 +2,9 @@
 
 from django.urls import path
 
-from results.pages import ReviewPage
+from results.pages import FindingsPage, ReviewPage
 
-urlpatterns = [path("review", ReviewPage.as_view(), name="review")]
+urlpatterns = [
+    path("findings", FindingsPage.as_view(), name="findings"),
+    path("review", ReviewPage.as_view(), name="review"),
+]

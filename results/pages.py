@@ -1,4 +1,4 @@
-"""The page on which photos are reviewed: an HTML shell, filled by the REST API."""
+"""The pages of findings and of the review of photos: HTML shells, filled by the REST API."""
 
 from typing import Any
 from uuid import UUID
@@ -10,6 +10,15 @@ from inspection.models import Asset
 from inspection.selectors import asset_label
 from missions.models import Mission
 from workspace.pages import SignedInPage
+
+
+class FindingsPage(SignedInPage):
+    """All findings of the organisation."""
+
+    template_name = "findings.html"
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"section": "findings"}
 
 
 class ReviewPage(SignedInPage):

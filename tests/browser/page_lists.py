@@ -9,6 +9,7 @@ FOR_OPERATORS = (
     "/assets",
     "/assets/data-issues",
     "/terrain",
+    "/findings",
     "/zones",
     "/review",
     "/account",

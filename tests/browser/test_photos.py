@@ -99,3 +99,33 @@ def test_a_viewer_on_a_phone_sees_photos_and_can_change_nothing(visitor: Visitor
     page.goto(f"{mission}/report")
     expect(page.locator("#report-photos .photo-thumb")).to_have_count(1)
     expect(page.locator("#report-photos input[type=file]")).to_have_count(0)
+
+
+def test_findings_are_listed_worst_first_filtered_worked_on_and_looked_at_again(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    mission = stores_mission(page, "Findings to settle")
+    label = asks(page, mission)["targets"][0]["label"]
+    asset = asks(page, mission)["targets"][0]["asset"]
+    token = next(one["value"] for one in page.context.cookies() if one["name"] == "csrftoken")
+    for severity, due in ((3, "2999-01-01"), (1, "2026-01-02"), (2, "2999-01-01")):
+        body = {"category": "tower-corrosion", "severity": severity, "asset": asset, "due_on": due}
+        assert page.request.post("/api/v1/findings", data=body, headers={"X-CSRFToken": token}).status == 201
+    page.goto("/findings")
+    rows = page.locator("#finding-rows tr")
+    of_asset = rows.filter(has_text=label)
+    expect(of_asset).to_have_count(3)
+    expect(of_asset.first).to_contain_text("Danger")
+    page.get_by_label("Overdue").check()
+    expect(of_asset).to_have_count(1)
+    expect(of_asset).to_contain_text("overdue since 2 Jan")
+    of_asset.get_by_role("combobox").select_option("work_ordered")
+    expect(page.locator("#toasts")).to_contain_text("Work ordered")
+    page.reload()
+    expect(of_asset.get_by_role("combobox")).to_have_value("work_ordered")
+    page.get_by_label("Overdue").uncheck()
+    of_asset.nth(0).get_by_role("checkbox").check()
+    of_asset.nth(1).get_by_role("checkbox").check()
+    expect(page.locator("#chosen-bar")).to_contain_text("2 findings chosen")
+    assert faults(page) == []
+    page.get_by_role("button", name="Look again at 2 findings").click()
+    expect(page).to_have_title(re.compile(re.escape(f"Look again: {label}")))

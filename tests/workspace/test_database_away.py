@@ -12,7 +12,7 @@ from workspace.models import Role
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
-PAGES = ["/", "/missions/new", "/live", "/uavs", "/assets", "/zones", "/imports", "/account", "/administration", "/admin/"]
+PAGES = ["/", "/missions/new", "/live", "/uavs", "/assets", "/findings", "/zones", "/imports", "/account", "/administration", "/admin/"]
 API = ["/api/v1/missions", "/api/v1/uavs", "/api/v1/assets", "/api/v1/zones", "/api/v1/jobs", "/api/v1/alerts", "/api/v1/live",
        "/api/v1/users"]  # fmt: skip
 

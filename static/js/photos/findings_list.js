@@ -87,7 +87,8 @@ export function lookAgain(findings) {
 }
 
 /** @param {string} kind @param {string} words @param {string} query */
-const exportLink = (kind, words, query) => h("a", { href: `/api/v1/findings.${kind}?${query}`, download: true }, words);
+export const exportLink = (kind, words, query) =>
+  h("a", { href: `/api/v1/findings.${kind}?${query}`, download: true }, words);
 
 /** @param {InspectionFinding} finding @param {string} query */
 function findingRow(finding, query) {
