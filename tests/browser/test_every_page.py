@@ -20,7 +20,8 @@ VIEWS: dict[str, dict[str, Any]] = {
 }
 PAGES = {
     "missions": "/", "map": "/missions/new", "fleet": "/uavs", "live": "/live", "assets": "/assets",
-    "data-issues": "/assets/data-issues", "terrain": "/terrain", "zones": "/zones", "findings": "/findings", "account": "/account", "not-found": "/no-such-page",
+    "data-issues": "/assets/data-issues", "terrain": "/terrain", "zones": "/zones", "findings": "/findings", "account": "/account",
+    "not-found": "/no-such-page",
 }  # fmt: skip
 
 
