@@ -104,8 +104,8 @@ def test_a_viewer_on_a_phone_sees_photos_and_can_change_nothing(visitor: Visitor
 def test_findings_are_listed_worst_first_filtered_worked_on_and_looked_at_again(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     mission = stores_mission(page, "Findings to settle")
-    label = asks(page, mission)["targets"][0]["label"]
-    asset = asks(page, mission)["targets"][0]["asset"]
+    target = asks(page, mission)["targets"][1]  # the tests above make findings at the first
+    label, asset = target["label"], target["asset"]
     token = next(one["value"] for one in page.context.cookies() if one["name"] == "csrftoken")
     for severity, due in ((3, "2999-01-01"), (1, "2026-01-02"), (2, "2999-01-01")):
         body = {"category": "tower-corrosion", "severity": severity, "asset": asset, "due_on": due}
@@ -129,3 +129,9 @@ def test_findings_are_listed_worst_first_filtered_worked_on_and_looked_at_again(
     assert faults(page) == []
     page.get_by_role("button", name="Look again at 2 findings").click()
     expect(page).to_have_title(re.compile(re.escape(f"Look again: {label}")))
+
+    page.get_by_role("button", name="Layers").click()
+    with page.expect_response(lambda answer: "/findings.geojson" in answer.url and answer.ok):
+        page.get_by_role("checkbox", name="Open findings").check()
+    page.keyboard.press("Escape")
+    expect(page.locator("#legend")).to_contain_text("Findings: danger")

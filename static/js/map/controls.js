@@ -11,6 +11,7 @@ import { t } from "../text.js";
 import { coordinateText } from "../units.js";
 import { mountCoordinates, mountScale, setAttribution } from "./furniture.js";
 import { storeLastView } from "./last_view.js";
+import { createFindingsLayer } from "./layers/findings.js";
 import { createInspectionsLayer } from "./layers/inspections.js";
 import { layersMenu } from "./look/layers_menu.js";
 import { mountLegend } from "./look/legend.js";
@@ -64,7 +65,7 @@ export function mountControls(view, page, act) {
   onTheme(() =>
     requestAnimationFrame(() => {
       view.recolour();
-      inspections.recolour();
+      for (const layer of kept) layer.recolour();
       act.recoloured?.(view.palette());
     }),
   );
@@ -84,8 +85,8 @@ export function mountControls(view, page, act) {
   storeLastView(map);
   mountRegionSwitcher(map, page, (box) => view.fit(box));
   const under = chooseUnder(view, page, () => attribute());
-  const inspections = createInspectionsLayer(map, view.ready);
-  mountLayersButton(map, under, () => [...(copiedAt === null ? [inspections] : []), ...(act.layers?.() ?? [])]);
+  const kept = [createInspectionsLayer(map, view.ready), createFindingsLayer(map, view.ready, view.palette)];
+  mountLayersButton(map, under, () => [...(copiedAt === null ? kept : []), ...(act.layers?.() ?? [])]);
   const measure = createMeasure(map, frame, byId("measure"), { onSwitch: act.measures, isBusy: act.isBusy });
   mountPlaceMenu(map, frame, measure, act);
   if (copiedAt === null) watchTiles(map, frame); // a copy has the tiles round its mission, and no others

@@ -24,6 +24,13 @@ const band = (accent) => sample(svg("path", { d: "M1 6H25", stroke: tintOf(accen
 
 /** @typedef {{ layer: string, words: string, draw: () => SVGElement, band?: string, kind?: string }} Row */
 
+/** Of open findings, by the worst at a place. */
+const SEVERITY_ROWS = [
+  { severity: "1", words: t("Findings: danger"), token: "--critical" },
+  { severity: "2", words: t("Findings: repair"), token: "--warning" },
+  { severity: "3", words: t("Findings: watch or no action"), token: "--advisory" },
+];
+
 /** Rows: the layer that shows it is in view, words, drawing. @type {Row[]} */
 const ROWS = [
   { layer: "lines", words: bandName("380"), band: "380", draw: line("--volt-400", 3) },
@@ -110,6 +117,12 @@ const ROWS = [
       ),
   },
   ...AGES.map(({ key, words, accent }) => ({ layer: "inspections", kind: key, words, draw: () => band(accent) })),
+  ...SEVERITY_ROWS.map(({ severity, words, token }) => ({
+    layer: "findings",
+    kind: severity,
+    words,
+    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 5, fill: `var(${token})` })),
+  })),
   {
     layer: "routes",
     words: t("Route, flown to the arrow"),
@@ -217,6 +230,7 @@ const keyOf = (layer, kind = "") => `${layer}/${kind}`;
 function kindOf({ layer, properties, state }) {
   if (layer.id === "lines") return voltageBand(properties.voltage);
   if (layer.id === "route-stops") return properties.kind;
+  if (layer.id === "findings") return String(Math.min(properties.worst ?? properties.severity, 3));
   if (layer.id.startsWith("inspections")) return ageOf(properties.inspected_s);
   if (layer.id !== "zones-fill" || properties.schedule === undefined) return "";
   return state.resting ? "resting" : "timed";
