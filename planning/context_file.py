@@ -30,7 +30,7 @@ from planning.task import task_from_json, task_to_json
 from planning.trajectory.heights import FloatArray
 from planning.views.photo_flight import PhotoFlight
 
-LAYOUT = 1
+LAYOUT = 2
 ABOUT, NETWORK, ZONES, TERRAIN = "context.json", "network.npz", "zones.npz", "terrain.npz"
 OTHER_FLIGHTS_S = 14 * 86_400.0  # after the departure: those of other missions that are written
 

@@ -26,7 +26,7 @@ class BridgeOutlines:
     """The areas of bridges, in their order."""
 
     area: NDArray[np.object_] = field(default_factory=lambda: np.zeros(0, dtype=object))  # (n,) polygons in lon, lat [deg]
-    has_tall_structure: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))  # (n,) pylons, arches or a lift
+    tall_share: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))  # (n,) see tall_share in inspection/scene/bridges.py
 
 
 @dataclass(frozen=True)

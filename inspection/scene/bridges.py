@@ -19,6 +19,7 @@ TALL_STRUCTURES = {  # values of tags of bridges with pylons, arches or a lift a
     "bridge:structure": {"arch", "cable-stayed", "simple-suspension", "suspension"},
     "bridge:support": {"pylon"},
 }
+PYLON_SHARE, ARCH_SHARE = 0.25, 0.1  # of the length of a bridge: how far what stands above its deck may rise; most arches are below it
 _LAYER = re.compile(r"-?[0-9]{1,3}")
 
 
@@ -39,6 +40,14 @@ def has_tall_structure(tags: Sequence[Mapping[str, str]]) -> bool:
         value.strip().lower().replace("_", "-") in TALL_STRUCTURES[key]
         for own in tags for key in TALL_STRUCTURES.keys() & own.keys() for value in str(own[key]).split(";")
     )  # fmt: skip
+
+
+def tall_share(tags: Sequence[Mapping[str, str]]) -> float:
+    """Return how high what stands above a bridge's deck may be, as a share of its length; 0 where nothing tall is known to stand there."""
+    if not has_tall_structure(tags):
+        return 0.0
+    but_arches = [{key: value for key, value in own.items() if value != "arch"} for own in tags]
+    return PYLON_SHARE if has_tall_structure(but_arches) else ARCH_SHARE
 
 
 def deck_of(ground_m: FloatArray, height_m: float | None, tags: Sequence[Mapping[str, str]]) -> tuple[float, str]:

@@ -12,7 +12,7 @@ from django.db import connection
 from inspection.models import AssetKind
 from inspection.network.infrastructure import NO_OSM_NODE, BridgeOutlines, GroundData, InfrastructurePlaces, InfrastructureWays, Zones
 from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V
-from inspection.scene.bridges import has_tall_structure
+from inspection.scene.bridges import tall_share
 from inspection.selectors.ground import ground_revision
 
 READINGS = 3
@@ -40,14 +40,15 @@ def ground_data() -> GroundData:
     """
     for _ in range(READINGS):
         revision = ground_revision()
+        bridges, outlines = _bridges()
         data = GroundData(
             revision=revision,
-            supports=_places(AssetKind.TOWER, "geometry"),
-            bridges=_places(AssetKind.BRIDGE, "centre"),
+            supports=_supports(),
+            bridges=bridges,
             lines=_ways(AssetKind.LINE),
             railways=_ways(AssetKind.RAILWAY),
             zones=zones_of_the_ground(),
-            bridge_outlines=_bridge_outlines(),
+            bridge_outlines=outlines,
         )
         if ground_revision() == revision:
             break
@@ -60,7 +61,7 @@ def supports_and_lines(
     """Return flyable supports and lines whose box meets west, south, east, north; only one line, if it is named."""
     in_box = _Area("AND geometry && ST_MakeEnvelope(%s, %s, %s, %s, 4326)", list(box))
     lines = in_box if line is None else _Area("AND id = %s", [line])
-    return _places(AssetKind.TOWER, "geometry", in_box), _ways(AssetKind.LINE, lines)
+    return _supports(in_box), _ways(AssetKind.LINE, lines)
 
 
 def zones_of_the_ground() -> Zones:
@@ -76,13 +77,13 @@ def _rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...
         return cursor.fetchall()
 
 
-def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> InfrastructurePlaces:
+def _supports(area: _Area = EVERYWHERE) -> InfrastructurePlaces:
     rows = _rows(
         f"""
-        SELECT id, CASE WHEN osm_type = 'n' AND NOT is_edited THEN osm_id END, ST_X({column}), ST_Y({column}), height_m
+        SELECT id, CASE WHEN osm_type = 'n' AND NOT is_edited THEN osm_id END, ST_X(geometry), ST_Y(geometry), height_m
         FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL {area.condition} ORDER BY id
-        """,  # noqa: S608  # column and condition are literals of this file
-        [kind, *area.parameters],
+        """,  # noqa: S608  # the condition is a literal of this file
+        [AssetKind.TOWER, *area.parameters],
     )
     return InfrastructurePlaces(
         asset=np.array([row[0] for row in rows], dtype=np.int64),
@@ -92,17 +93,24 @@ def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> Infrastru
     )
 
 
-def _bridge_outlines() -> BridgeOutlines:
+def _bridges() -> tuple[InfrastructurePlaces, BridgeOutlines]:
+    """Return the bridges by their centres, and their outlines in the same order, as of one moment."""
     rows = _rows(
         """
-        SELECT ST_AsBinary(geometry), tags, jsonb_path_query_array(parts, '$[*].tags')
+        SELECT id, ST_X(centre), ST_Y(centre), height_m, ST_AsBinary(geometry), tags, jsonb_path_query_array(parts, '$[*].tags')
         FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL ORDER BY id
         """,
         [AssetKind.BRIDGE],
     )
-    tall = [has_tall_structure([tags, *of_parts]) for _, tags, of_parts in ((row[0], *map(json.loads, row[1:])) for row in rows)]
-    areas = shapely.from_wkb(np.array([bytes(row[0]) for row in rows], dtype=object))
-    return BridgeOutlines(np.asarray(areas, dtype=object).reshape(-1), np.array(tall, dtype=bool))
+    places = InfrastructurePlaces(
+        asset=np.array([row[0] for row in rows], dtype=np.int64),
+        osm_node=np.full(len(rows), NO_OSM_NODE, dtype=np.int64),
+        position=np.array([row[1:3] for row in rows], dtype=np.float64).reshape(-1, 2),
+        height_m=np.array([np.nan if row[3] is None else row[3] for row in rows], dtype=np.float64),
+    )
+    areas = shapely.from_wkb(np.array([bytes(row[4]) for row in rows], dtype=object))
+    shares = [tall_share([json.loads(row[5]), *json.loads(row[6])]) for row in rows]
+    return places, BridgeOutlines(np.asarray(areas, dtype=object).reshape(-1), np.array(shares, dtype=np.float64))
 
 
 def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> InfrastructureWays:

@@ -12,7 +12,7 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.models import Asset, AssetKind
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, UNTAGGED_HEIGHT_M
-from inspection.scene.bridges import deck_of, has_tall_structure
+from inspection.scene.bridges import deck_of, has_tall_structure, tall_share
 from inspection.scene.overhead import Overhead
 from inspection.scene.supports import DrawnSupport
 from inspection.selectors.assets import Box, area_of
@@ -93,7 +93,7 @@ def _tower_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
     band = ground.band(views, around_m)
     feet_m = ground.heights_m(ground.frame.to_metres(found.position))
     supports, spans = _standing(found, ground.frame, np.nan_to_num(feet_m), int(own[0]))
-    others = list(_others(asset, box, ground.frame, band))
+    others = list(_others(asset, box, ground, band))
     site = tower_site(supports, spans, settings.CLEARANCE_RULES, band, others, _lens_offset_m(views), around_m)
     return SiteOnMap(site, ground.frame, ground.known_base_m(feet_m), ground.heights_m, supports[0].support)
 
@@ -120,7 +120,7 @@ def _bridge_on_map(asset: Asset, views: ViewsRequest) -> SiteOnMap | None:
     small_parts = [
         Obstacle(shapely.get_coordinates(part), 0.0, model.top_m) for part in shapely.get_parts(outline) if shapely.area(part) < MIN_PART_M2
     ]
-    others = [*small_parts, *_others(asset, box, ground.frame, band)]
+    others = [*small_parts, *_others(asset, box, ground, band)]
     rules, occluders = settings.CLEARANCE_RULES, list(_bridges_beside(asset, ground, band))
     site = bridge_site(model, supports, spans, rules, band, others, _lens_offset_m(views), occluders)
     edge_m = ground.heights_m(shapely.get_coordinates(outline))
@@ -213,19 +213,27 @@ def _standing(
     return supports, [(number[span.start], number[span.end]) for span in hung]
 
 
-def _others(asset: Asset, box: Box, frame: LocalFrame, band: GroundBand) -> Iterator[Obstacle]:
-    """Other railways, bridges, and lines that are not in use, as obstacles on the highest ground of the box around each."""
+def _others(asset: Asset, box: Box, ground: "_Ground", band: GroundBand) -> Iterator[Obstacle]:
+    """Other railways, bridges, and lines that are not in use, as obstacles on the highest ground of the box around each.
+
+    Bridges count from the highest ground at their whole outline, however far away, as on routes.
+    """
+    frame = ground.frame
     rows = Asset.objects.filter(vanished_at=None, geometry__intersects=area_of(box)).exclude(kind=AssetKind.TOWER).exclude(pk=asset.pk)
-    for row in rows.annotate(wkb=AsWKB("geometry")).only("kind", "height_m", "max_voltage_v", "is_flyable"):
+    for row in rows.annotate(wkb=AsWKB("geometry")).only("kind", "height_m", "max_voltage_v", "is_flyable", "tags", "parts"):
         if row.kind == AssetKind.LINE and row.is_flyable:
             continue
-        shape = shapely.intersection(shapely.force_2d(shapely.from_wkb(bytes(row.wkb))), shapely.box(*box))
+        whole = shapely.force_2d(shapely.from_wkb(bytes(row.wkb)))
+        shape = shapely.intersection(whole, shapely.box(*box))
         height_m = row.height_m or OTHER_TOP_M.get(row.kind, HIGHEST_VOLTAGE_HEIGHT_M)
         beside_m = WIRES_BESIDE_M if row.kind == AssetKind.LINE else TRACK_BESIDE_M if row.kind == AssetKind.RAILWAY else 0.0
         for part in shapely.get_parts(shape):
             corners = frame.to_metres(shapely.get_coordinates(part))
             if row.kind == AssetKind.BRIDGE and len(corners):
-                yield Obstacle(corners, beside_m, band.highest_low_m(corners) + height_m)
+                outline_m = frame.to_metres(shapely.get_coordinates(shapely.convex_hull(whole)))
+                bank_m = float(np.fmax.reduce(ground.heights_m(outline_m), initial=-np.inf))
+                guessed_m = 0.0 if row.height_m else tall_share(row.bridge_tags) * float(np.hypot(*np.ptp(outline_m, axis=0)))
+                yield Obstacle(corners, beside_m, max(band.highest_low_m(corners), bank_m) + max(height_m, guessed_m))
             else:
                 pieces = (corners[place : place + 2] for place in range(len(corners) - 1))
                 yield from (Obstacle(piece, beside_m, band.highest_low_m(piece) + height_m) for piece in pieces)

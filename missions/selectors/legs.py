@@ -10,7 +10,7 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.network.spans import Spans, spans_between, spans_of
+from inspection.network.spans import DECK, Spans, spans_between, spans_of
 from inspection.selectors import NoGraph
 from inspection.selectors.ground import ground_dataset_version
 from inspection.selectors.planning import planning_read
@@ -18,6 +18,7 @@ from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
 from missions.selectors.planning_context import terrain_under
 from missions.selectors.zones import zones_met
+from planning.clearance.obstacle_clearance import spans_near
 from planning.clearance.zone_clearance import FlownRoute
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance
@@ -129,15 +130,12 @@ def _all_spans() -> Spans:
 
 def _spans_elsewhere(spans: Spans, position: FloatArray) -> Spans:
     """Return the spans near a leg except those attached at its ends: whether these are inspected is unknown during a drag."""
-    low, high = position.min(axis=0) - NEAR_DEG, position.max(axis=0) + NEAR_DEG
-    near = ((np.maximum(spans.start, spans.end) >= low) & (np.minimum(spans.start, spans.end) <= high)).all(axis=1)
+    near = spans_near(spans, position, 0.0)
+    is_attached = np.zeros(len(near), dtype=np.bool_)
     for at in (position[0], position[-1]):
-        for ends in (spans.start, spans.end):
-            near &= (np.abs(ends - at) > AT_DEG).any(axis=1)
-    ground = spans.start_ground[near], spans.end_ground[near]
-    return spans_between(
-        spans.start[near], spans.end[near], spans.start_height_m[near], spans.end_height_m[near], spans.asset[near], ground
-    )
+        for ends in (spans.start[near], spans.end[near]):
+            is_attached |= (np.abs(ends - at) <= AT_DEG).all(axis=1)
+    return spans.where(near[~is_attached | (spans.asset[near] == DECK)])
 
 
 def _fault(zone: int | None, message: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.network import Network
 from inspection.network.build.obstacles import obstacle_index_of, obstacles_along
-from inspection.network.spans import BESIDE_M, spans_of
+from inspection.network.spans import BESIDE_M, NO_BRIDGE, spans_of
 from inspection.network.zones.zone_index import ZoneIndex
 from operation.reasons import Reason
 from planning.assignment.candidate_plan import CandidatePlan
@@ -45,11 +45,15 @@ def barring_spans(routes: Sequence[PlannedRoute], context: PlanningContext) -> d
 
 
 def walls_of_spans(network: Network, numbers: Collection[int], closed: Collection[int], terminals: Sequence[LonLat]) -> ZoneIndex:
-    """Around wires but for their ends; around all of what is too short for that, and of `closed` but for ends at a terminal."""
-    spans, rows = spans_of(network), np.array(sorted(numbers), dtype=np.int64)
+    """Around wires but for their ends; around all of what is too short for that, of `closed` but for ends at a terminal, and of bridges."""
+    spans = spans_of(network)
+    barring = np.array(sorted(numbers), dtype=np.int64)
+    on_same_bridge = np.isin(spans.bridge, spans.bridge[barring]) & (spans.bridge != NO_BRIDGE)
+    rows = np.union1d(barring, np.flatnonzero(on_same_bridge))
     start, end = spans.start[rows], spans.end[rows]
     length_m = np.maximum(distance_m(start, end), 1e-3)
-    cut = np.where(length_m > 3.0 * FREE_AT_ENDS_M, FREE_AT_ENDS_M / length_m, 0.0)[:, None].repeat(2, axis=1)
+    has_free_ends = (length_m > 3.0 * FREE_AT_ENDS_M) & (spans.bridge[rows] == NO_BRIDGE)
+    cut = np.where(has_free_ends, FREE_AT_ENDS_M / length_m, 0.0)[:, None].repeat(2, axis=1)
     is_closed = np.isin(rows, sorted(closed))
     for side, place in enumerate((start, end)):
         cut[is_closed & ~_near_any(place, np.array(terminals)), side] = 0.0

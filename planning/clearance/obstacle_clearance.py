@@ -60,12 +60,12 @@ def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHe
     top_m = np.column_stack([spans.start_height_m[near], spans.end_height_m[near]])
     if is_known and ground_heights_m is not None:
         used = np.unique(span)
-        reported_m = ground_heights_m(spans.ground_places(near[used])).reshape(2, -1).T
-        top_m[used] += np.where(np.isnan(reported_m).any(axis=1, keepdims=True), UNKNOWN_TOP_M, reported_m)
+        top_m[used] = np.nan_to_num(spans.tops_m(near[used], ground_heights_m), nan=UNKNOWN_TOP_M)
     found: set[tuple[int, int]] = set()
     kept_m = clearances_m(points)[leg + 1]
     is_photo = ~np.isnan(kept_m)
     kept = np.column_stack([np.full(len(leg), rules.clearance_m - SHORT_M), np.full(len(leg), SLOPE), np.full(len(leg), BESIDE_M)])
+    kept[spans.asset[near[span]] == DECK, 1] = 0.0  # beside a piece of a deck may be the deck
     kept[is_photo] = np.column_stack([kept_m - PHOTO_SHORT_M, np.zeros(len(leg)), kept_m - PHOTO_SHORT_M])[is_photo]
     too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], kept)
     for own_leg, own_span, photo in zip(leg[too_near].tolist(), span[too_near].tolist(), is_photo[too_near].tolist(), strict=True):

@@ -62,12 +62,10 @@ def too_low(waypoints: Waypoints, spans: Spans, ground: GroundModel | None, rule
         return None
     span = np.concatenate([leg_span, point_span])
     place = np.concatenate([leg, point])
-    ground_m = np.zeros((len(span), 2))
+    tops_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
     if known is not None:
-        reported_m = known.heights_m(spans.ground_places(span)).reshape(2, -1).T
-        ground_m = np.where(np.isnan(reported_m).any(axis=1, keepdims=True), ABOVE_ALL_M, reported_m)
-    heights_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
-    least_m = np.ascontiguousarray(ground_m + heights_m + rules.clearance_m)
+        tops_m = np.nan_to_num(spans.tops_m(span, known.heights_m), nan=ABOVE_ALL_M)
+    least_m = np.ascontiguousarray(tops_m + rules.clearance_m)
     is_leg = np.arange(len(place)) < len(leg)
     row, begin, until, needed_m = stretches_too_low(points.position, level_m, place, is_leg, span, least_m, spans)
     if not len(row):

@@ -33,7 +33,7 @@ def tops_below(start: FloatArray, end: FloatArray, spans: Spans, ground_heights_
     tops_m = np.stack([spans.start_height_m[near], spans.end_height_m[near]])
     if ground_heights_m is not None:
         used = np.unique(span)
-        tops_m[:, used] += ground_heights_m(spans.ground_places(near[used])).reshape(2, -1)
+        tops_m[:, used] = spans.tops_m(near[used], ground_heights_m).T
     to_start = tops_m[0] > tops_m[1]
     low, high = np.where(to_start[:, None], feet[::-1], feet)
     low_m, high_m = np.where(to_start, tops_m[::-1], tops_m)

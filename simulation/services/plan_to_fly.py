@@ -180,11 +180,10 @@ def _standing(plan: PlanToFly, ground: PlanningGround, terrain: Heights | None) 
     places = np.array([waypoint.position for route in plan.routes for waypoint in route.route.waypoints])
     near = _near(spans, places)
     start, end = spans.start[near], spans.end[near]
-    at_start, at_end = (
-        (_flat(start), _flat(end)) if terrain is None else (terrain(spans.start_ground[near]), terrain(spans.end_ground[near]))
-    )
-    start_m, end_m = _as_planned(start, spans.start_height_m[near], plan), _as_planned(end, spans.end_height_m[near], plan)
-    return Standing(start, end, at_start + start_m, at_end + end_m)
+    tops_m = spans.tops_m(near, _flat if terrain is None else terrain)
+    for side, (places, heights_m) in enumerate(((start, spans.start_height_m[near]), (end, spans.end_height_m[near]))):
+        tops_m[:, side] += _as_planned(places, heights_m, plan) - heights_m
+    return Standing(start, end, tops_m[:, 0], tops_m[:, 1])
 
 
 def _as_planned(places: FloatArray, heights_m: FloatArray, plan: PlanToFly) -> FloatArray:

@@ -63,7 +63,7 @@ def test_the_demo_region_in_3d_is_that_of_rows_terrain_and_planners(client: Clie
     assert shown["left_out"] == {"supports": 0, "spans": 0, "railways": 0, "bridges": 0, "zones": 0}
 
     planned = network(ground_data(), LinkingRules())
-    pairs, _, _, heights_m, _ = hung_between(planned)
+    pairs, _, heights_m, _, _ = hung_between(planned)
     is_wire = pairs[:, 0] != pairs[:, 1]
     along_lines = {tuple(sorted(edge)) for edge in planned.edge[planned.edge_kind == EdgeKind.LINE].tolist()}
     counted = {

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.network.build.decks import bridge_heights_m, decks
+from inspection.network.build.decks import NO_DECKS, Decks, bridge_heights_m, decks
 from inspection.network.build.edges import Edges, cheapest_per_pair, component_labels, costs, edges_of, joined, lengths_m, without_seam
 from inspection.network.build.joining import JoinedVertices, join_vertices
 from inspection.network.build.links import bridge_links, crossing_links, railway_crossing_links
@@ -25,8 +25,7 @@ FloatArray = NDArray[np.float64]
 class Network:
     """n nodes and m undirected edges as if there were no zones. It lacks the links that are laid where zones leave room for them.
 
-    The arrays are those of InspectionGraph, and those of the decks of bridges: deck_line (k, 2, 2) from lon, lat [deg] to lon, lat, and
-    deck_height_m (k,) over the ground at deck_ground (k, 2). Several pieces lie on the same line, with heights over other places.
+    The arrays are those of InspectionGraph, and those of Decks by the names of its fields.
     """
 
     position: FloatArray
@@ -38,9 +37,14 @@ class Network:
     cost: FloatArray
     edge_kind: NDArray[np.uint8]
     edge_asset: IntArray
-    deck_line: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 2)))
-    deck_ground: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
-    deck_height_m: FloatArray = field(default_factory=lambda: np.zeros(0))
+    deck_line: FloatArray = field(default_factory=lambda: NO_DECKS.line)
+    deck_bridge: IntArray = field(default_factory=lambda: NO_DECKS.bridge)
+    deck_centre: FloatArray = field(default_factory=lambda: NO_DECKS.centre)
+    deck_over_centre_m: FloatArray = field(default_factory=lambda: NO_DECKS.over_centre_m)
+    deck_over_banks_m: FloatArray = field(default_factory=lambda: NO_DECKS.over_banks_m)
+    deck_group: IntArray = field(default_factory=lambda: NO_DECKS.group)
+    deck_corner: FloatArray = field(default_factory=lambda: NO_DECKS.corner)
+    deck_corner_group: IntArray = field(default_factory=lambda: NO_DECKS.corner_group)
 
     def __post_init__(self) -> None:
         """Nobody writes to the arrays."""
@@ -52,6 +56,10 @@ class Network:
     def graph_arrays(self) -> dict[str, NDArray[Any]]:
         """Return the arrays that an inspection graph has too."""
         return {name: getattr(self, name) for name in GRAPH_FIELDS}
+
+    @property
+    def decks(self) -> Decks:
+        return Decks(*(getattr(self, f"deck_{name}") for name in Decks._fields))
 
     @property
     def node_count(self) -> int:
@@ -84,9 +92,8 @@ def network(ground: GroundData, rules: LinkingRules) -> Network:
 
     Nodes come in the order supports, line vertices, railway points, bridges.
     """
-    line, over, height_m = decks(ground.bridges.position, ground.bridges.height_m, ground.bridge_outlines)
-    bare = put_together(*_nodes_and_edges(ground, rules), rules)
-    return replace(bare, deck_line=line, deck_ground=over, deck_height_m=height_m)
+    found = decks(ground.bridges.position, ground.bridges.height_m, ground.bridge_outlines)._asdict()
+    return replace(put_together(*_nodes_and_edges(ground, rules), rules), **{f"deck_{name}": array for name, array in found.items()})
 
 
 def put_together(edges: Edges, nodes: Nodes, rules: LinkingRules) -> Network:

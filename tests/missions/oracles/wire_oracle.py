@@ -18,6 +18,7 @@ CLEARANCE_M, ROUNDING_M = 15.0, 1.0
 BESIDE_M = 24.0
 STEEPEST = 0.26  # a tower is come to on a slope: so much less than the clearance for each metre that it still is away
 STEP_M = 3.0
+FLAT_M = 2.0
 HIGHEST_VOLTAGE_V, HIGHEST_VOLTAGE_M = 300_000, 60.0  # lines of such a voltage and the towers on them, where no height is tagged
 USUAL_M = {"tower": 45.0, "line": 45.0, "railway": 8.0, "bridge": 30.0}
 
@@ -103,21 +104,19 @@ class WireJudge:
                     yield f"{route['uav']}: leg {leg} at {one['position']} is {short_m:.1f} m too low over {self.top_m[wire].tolist()}"
 
     def _decks(self, row: Asset) -> Iterator[tuple[Any, float]]:
-        """The area of a bridge and the height of what stands on it: 30 m over its centre and ends; as stated, and 12 m, respectively."""
+        """The area of a bridge and the height of what stands on it: 30 m over its centre and 20 m over its banks; as stated, and 12 m."""
         area = shapely.from_wkb(bytes(row.geometry.wkb))
         metres = shapely.transform(area, self._metres)
-        corners = shapely.get_coordinates(metres.minimum_rotated_rectangle)
-        height_m = self._height(row)
-        if len(corners) < 5 or area.geom_type == "LineString":
+        if area.area == 0.0:
             return
-        sides_m = [math.dist(corners[0], corners[1]), math.dist(corners[1], corners[2])]
-        around = [(1, 2, 3, 0), (0, 1, 2, 3)][sides_m[1] > sides_m[0]]  # the corners of one short side, then of the other
-        ends = [(corners[around[at]] + corners[around[at + 1]]) / 2.0 for at in (0, 2)]
+        height_m, is_stated = self._height(row), row.height_m is not None
         if self.ground is None:
             yield metres, height_m
-        elif max(sides_m) > 1.1 * min(sides_m):
-            at_m = self.ground(np.array([row.centre.coords, *(self._degrees(end) for end in ends)]))
-            yield metres, float(max(at_m[0] + height_m, at_m[1:].max() + (height_m if row.height_m is None else min(height_m, 12.0))))
+            return
+        hull = shapely.get_coordinates(shapely.convex_hull(area))
+        highest_m = float(self.ground(hull).max()) - FLAT_M  # planners look at no more than 16 corners
+        at_centre_m = float(self.ground(np.array([row.centre.coords]))[0])
+        yield metres, max(at_centre_m + height_m, highest_m + (min(height_m, 12.0) if is_stated else 20.0))
 
     def _low_over_decks(self, leg: str, places: Any, level_m: list[float]) -> Iterator[str]:
         share = np.linspace(0.0, 1.0, int(math.dist(*places) / STEP_M) + 2)
@@ -176,10 +175,6 @@ class WireJudge:
     def _metres(self, places: Any) -> Any:
         degree_m = math.radians(1.0) * EARTH_M
         return (np.asarray(places)[:, :2] - self.origin) * (degree_m * math.cos(math.radians(self.origin[1])), degree_m)
-
-    def _degrees(self, place: Any) -> Any:
-        degree_m = math.radians(1.0) * EARTH_M
-        return place / (degree_m * math.cos(math.radians(self.origin[1])), degree_m) + self.origin
 
 
 def _vertices(row: Asset) -> list[tuple[float, ...]]:

@@ -237,8 +237,9 @@ def test_no_leg_leads_under_a_deck_or_low_over_it(
         return np.hypot((position[:, 0] - 10.0) / EAST_DEG, (position[:, 1] - centre[0, 1]) / METRE_DEG)
 
     ground = ground_like(lambda position: np.where(from_centre_m(position) > 0.8 * half_m, bank_m, 100.0), 9.96, HERE + 0.02, 0.08, 0.0003)
-    line, over, height_m = decks(centre, np.array([tagged_m]), BridgeOutlines(np.array([area], dtype=object), np.array([False])))
-    deck = spans_between(line[:, 0], line[:, 1], height_m, height_m, np.full(len(line), DECK), (over, over))
+    found = decks(centre, np.array([tagged_m]), BridgeOutlines(np.array([area], dtype=object), np.zeros(1)))
+    line, over_m = found.line, np.maximum(found.over_centre_m, found.over_banks_m)[found.bridge]
+    deck = spans_between(line[:, 0], line[:, 1], over_m, over_m, np.full(len(line), DECK), found.bridge, found)
     points = RoutePoints.of([RoutePoint(at(north, east), WaypointKind.PASS, agl_m) for north, east, agl_m in places])
     followed, is_flat = with_heights(points, ground.ground, RULES)
     assert not is_flat
@@ -248,10 +249,8 @@ def test_no_leg_leads_under_a_deck_or_low_over_it(
     assert spans_too_near(flown, deck, ground.ground.heights_m, RULES) == set()
     assert flown.amsl_m is not None
     ends = np.array([at(north_m + side * half_m * along[1], side * half_m * along[0]) for side in (-1.0, 1.0)])
-    if np.isnan(tagged_m):
-        top_m = float(ground.metres(ends).max()) + 30.0
-    else:
-        top_m = max(float(ground.metres(ends).max()) + 12.0, float(ground.metres(centre)[0]) + tagged_m)
+    over_banks_m, over_centre_m = (20.0, 30.0) if np.isnan(tagged_m) else (12.0, tagged_m)
+    top_m = max(float(ground.metres(ends).max()) + over_banks_m, float(ground.metres(centre)[0]) + over_centre_m)
     steps = flown.points.position[:-1, None] + np.linspace(0.0, 1.0, 400)[:, None] * np.diff(flown.points.position, axis=0)[:, None]
     levels_m = (flown.amsl_m[:-1, None] + np.linspace(0.0, 1.0, 400) * np.diff(flown.amsl_m)[:, None]).ravel()
     metres = (steps.reshape(-1, 2) - (10.0, HERE)) / (EAST_DEG, METRE_DEG)
