@@ -21,9 +21,13 @@ export function loadMapLibrary() {
 
 const MAX_WAIT_MS = 1_000;
 
-/** Load the library and wait for the page's data, but not for long: creating a map takes the processor from drawing them. @param {Promise<unknown>} data */
+/**
+ * Load the library after the page's data, but wait for these not for long: reading it and creating a map take the processor from drawing
+ * them. The browser has fetched it meanwhile, as the page names it (`modulepreload`).
+ *
+ * @param {Promise<unknown>} data
+ */
 export async function mapLibraryAfter(data) {
-  const library = loadMapLibrary();
   await Promise.race([data, new Promise((resolve) => setTimeout(resolve, MAX_WAIT_MS))]);
-  await library;
+  await loadMapLibrary();
 }

@@ -1,7 +1,7 @@
 /** The operator's map: composes the page and loads its data. */
 
 import { ApiError, get } from "../api.js";
-import { byId, h } from "../dom.js";
+import { byId, h, whenSeen } from "../dom.js";
 import { mapBindings } from "../map/controls.js";
 import { openingBox } from "../map/map_view.js";
 import { mapLibraryAfter } from "../map/maplibre.js";
@@ -183,7 +183,7 @@ if (page.canPlan) {
 } else mountOptionsRead(store);
 mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces });
 mountFoot(store, actions, { approve: () => void flying.approve(), rehearse: rehearsing.begin });
-const grounds = createGrounds();
+const grounds = createGrounds(whenSeen(byId("route-list")));
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map?.showPoint(position) });
 mountProfile(store, { grounds });
 mountWhy(store, actions, { canPlan: page.canPlan });

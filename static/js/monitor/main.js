@@ -103,7 +103,10 @@ const scene = mountSceneOpener(() => {
 });
 const commanding = page.canFly ? createCommanding(store, page) : null;
 const narrow = mountNarrow();
-createMissionDetails(store);
+createMissionDetails(
+  store,
+  mountedMap.then(({ ready }) => ready),
+);
 mountHead(store, page);
 const fleetFilter = page.mission === null ? mountFleetFilter(store) : null;
 mountCards(store, {
