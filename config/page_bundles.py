@@ -15,6 +15,8 @@ from django.conf import settings
 FOLDER = "bundles"  # of the collected static files; every name in it changes with the content
 SOURCES = settings.BASE_DIR / "static"
 MAP_LIBRARY = "node_modules/.spanwise/maplibre-gl/maplibre-gl.mjs"
+MAP_LIBRARY_ENTRY = "js/shared/map_library.js"
+MAP_MODULE = "static/js/map/maplibre.js"  # loads the library
 BROTLI_QUALITY = 9  # 11 saves another 8 % and takes 6 s more
 MAP_WORKER = "lib/maplibre-gl/maplibre-gl-worker.mjs"
 LAZY_ENTRIES = ("js/fleet/fleet_map.js", "js/scene/panel.js")  # imported by pages with a map once they are needed
@@ -40,6 +42,7 @@ class Bundle(NamedTuple):
 
     path: str
     chunks: list[str]
+    later: list[str]  # chunks that the page's script itself loads: the map's library
 
 
 def build(static_root: Path) -> tuple[dict[str, Bundle], set[str]]:
@@ -48,7 +51,8 @@ def build(static_root: Path) -> tuple[dict[str, Bundle], set[str]]:
     scripts = {name: SOURCES / name for name in _names("js/*/main.js") if name not in STANDALONE_ENTRIES}
     with tempfile.TemporaryDirectory() as scratch:
         graph = _graph(_esbuild(scripts, Path(scratch), "--splitting")["inputs"])
-    shared = shared_modules([f"static/{name}" for name in scripts], graph)
+    pages = [f"static/{name}" for name in scripts]
+    shared, with_map = shared_modules(pages, graph), {page for page in pages if MAP_MODULE in _reached(page, graph)}
     for name in (*scripts, *LAZY_ENTRIES):
         scripts[name] = entries / name
         scripts[name].parent.mkdir(parents=True, exist_ok=True)
@@ -57,7 +61,7 @@ def build(static_root: Path) -> tuple[dict[str, Bundle], set[str]]:
         scripts[name].write_text("\n".join(lines))
     alone = {name: SOURCES / name for name in (*STANDALONE_ENTRIES, *_names("css/pages/*.css"))}
     alone[MAP_WORKER] = settings.BASE_DIR / Path(MAP_LIBRARY).parent / Path(MAP_WORKER).name
-    scripts["js/shared/map_library.js"] = settings.BASE_DIR / MAP_LIBRARY  # an entry, so that no other module is in its chunk
+    scripts[MAP_LIBRARY_ENTRY] = settings.BASE_DIR / MAP_LIBRARY  # an entry, so that no other module is in its chunk
     outputs = (
         _esbuild(scripts, folder, "--splitting", *PAGE_OPTIONS, later=entries)["outputs"]
         | _esbuild(alone, folder, *PAGE_OPTIONS)["outputs"]
@@ -67,8 +71,13 @@ def build(static_root: Path) -> tuple[dict[str, Bundle], set[str]]:
     graph = _graph(outputs)
     names = {os.path.relpath(source, settings.BASE_DIR): name for name, source in (scripts | alone).items()}
     of_root = {path: os.path.relpath(settings.BASE_DIR / path, static_root) for path in outputs}
+    library = next(path for path, output in outputs.items() if output.get("entryPoint") == MAP_LIBRARY)
     bundles = {
-        names[output["entryPoint"]]: Bundle(of_root[path], [of_root[chunk] for chunk in _reached(path, graph)])
+        names[output["entryPoint"]]: Bundle(
+            of_root[path],
+            [of_root[chunk] for chunk in _reached(path, graph)],
+            [of_root[chunk] for chunk in (library, *_reached(library, graph)) if f"static/{names[output['entryPoint']]}" in with_map],
+        )
         for path, output in outputs.items()
         if output.get("entryPoint") in names
     }
@@ -97,7 +106,7 @@ def shared_modules(pages: Iterable[str], graph: Graph) -> dict[str, list[str]]:
     Under MAP_PAGES is what pages with a map load.
     """
     reached = {page: set(_reached(page, graph)) for page in pages}
-    with_map = {page for page, modules in reached.items() if MAP_LIBRARY in modules}
+    with_map = {page for page, modules in reached.items() if MAP_MODULE in modules}
     users: dict[str, set[str]] = {}
     for page, modules in reached.items():
         for module in modules:

@@ -21,7 +21,9 @@ class StaticFiles(ManifestStaticFilesStorage):
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self.chunks: dict[str, list[str]] = self._record().get("chunks", {})  # that the bundle of each source needs
+        record = self._record()
+        self.chunks: dict[str, list[str]] = record.get("chunks", {})  # that the bundle of each source needs
+        self.later: dict[str, list[str]] = record.get("later", {})  # that it loads itself
 
     def post_process(self, paths: dict[str, Any], dry_run: bool = False, **options: Any) -> Iterator[Any]:
         yield from super().post_process({name: found for name, found in paths.items() if not is_bundled(name)}, dry_run, **options)
@@ -34,7 +36,8 @@ class StaticFiles(ManifestStaticFilesStorage):
             if str(path.relative_to(root)) not in files | before:
                 path.unlink()
         self.chunks = {name: bundle.chunks for name, bundle in bundles.items()}
-        (root / RECORD).write_text(json.dumps({"chunks": self.chunks, "files": sorted(files)}, indent=1))
+        self.later = {name: bundle.later for name, bundle in bundles.items() if bundle.later}
+        (root / RECORD).write_text(json.dumps({"chunks": self.chunks, "later": self.later, "files": sorted(files)}, indent=1))
         self.hashed_files |= {name: bundle.path for name, bundle in bundles.items()}
         self.save_manifest()
 

@@ -8,7 +8,7 @@ from inspection.map_pages import map_page
 from missions.models import Campaign, MissionState
 from missions.selectors.missions import mission_bounds, state_of_mission
 from missions.services.missions import EDITABLE
-from workspace.pages import SignedInPage
+from workspace.pages import ALERT_COUNTS, GROUND, SignedInPage
 
 
 class MissionsPage(SignedInPage):
@@ -22,6 +22,7 @@ class MissionPage(SignedInPage):
     """
 
     template_name = "mission.html"
+    answers = (ALERT_COUNTS, GROUND)
     stage = "plan"
 
     def page(self, **kwargs: Any) -> dict[str, Any]:

@@ -7,15 +7,22 @@ from django.http import Http404
 
 from inspection.map_pages import map_page
 from missions.models import Mission, MissionUav
-from missions.selectors.missions import mission_bounds
-from workspace.pages import SignedInPage
+from missions.selectors.missions import mission_bounds, missions_in_the_air
+from workspace.pages import GROUND, SignedInPage
+
+MAX_EARLY_MISSIONS = 4  # which the browser requests beside the page's script
 
 
 class LivePage(SignedInPage):
     """The live page of the organisation's fleet."""
 
     template_name = "live.html"
+    answers = (GROUND,)
     extra_context = {"section": "live"}
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        shown = missions_in_the_air(self.request.user.organisation_id, limit=MAX_EARLY_MISSIONS)
+        return super().get_context_data(**kwargs) | {"shown_missions": shown}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
         return {"canFly": self.request.user.can_plan, "mission": None, "bounds": None} | map_page(self.request.user)
@@ -47,6 +54,10 @@ class MissionStagePage(SignedInPage):
 
 class MissionFlyPage(MissionStagePage):
     template_name = "live.html"
+    answers = (GROUND,)
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"shown_missions": [kwargs["mission_id"]]}
 
 
 class MissionReportPage(MissionStagePage):

@@ -2,6 +2,7 @@
 
 import json
 from functools import cache
+from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
@@ -10,14 +11,20 @@ from django.contrib.auth.mixins import LoginRequiredMixin
 from django.contrib.staticfiles import finders
 from django.contrib.staticfiles.storage import staticfiles_storage
 from django.http import HttpRequest, HttpResponse
+from django.urls import resolve
 from django.views.generic import TemplateView
 
 from workspace.api.signed_in import SignedInPageRequest
 from workspace.sessions.browser_sessions import seconds_left
 
+ALERT_COUNTS = "/api/v1/alerts/counts"
+GROUND = "/api/v1/ground"
+
 
 class OpenPage(TemplateView):
     """An HTML shell for everybody, in the frame of the pages; `page` is empty without a user."""
+
+    answers: tuple[str, ...] = ()  # addresses of the API whose answers the page holds: its script does not request them
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
@@ -28,16 +35,25 @@ class OpenPage(TemplateView):
             "canPlan": user.can_plan, "canCurate": user.can_curate,
             "sessionEndsIn_s": seconds_left(self.request.session),
         } | self.page(**kwargs)  # fmt: skip
-        return super().get_context_data(**kwargs) | {"page": page}
+        answers = {address: found for address in self.answers if (found := _answer(self.request, address)) is not None}
+        return super().get_context_data(**kwargs) | {"page": page, "answers": answers}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
         """Return what the page's script needs before its first request."""
         return {}
 
 
+def _answer(request: HttpRequest, address: str) -> Any:
+    """Return what the API answers to the user of a page; None where it refuses."""
+    view, positional, named = resolve(address)
+    response = view(request, *positional, **named)
+    return response.data if response.status_code == HTTPStatus.OK else None
+
+
 class SignedInPage(LoginRequiredMixin, OpenPage):
     """An HTML shell for an authenticated user."""
 
+    answers: tuple[str, ...] = (ALERT_COUNTS,)
     request: SignedInPageRequest
 
 

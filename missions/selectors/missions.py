@@ -1,11 +1,13 @@
 """Reads of missions and UAVs, always within one organisation, and of the inspections of assets."""
 
+from datetime import timedelta
 from typing import TYPE_CHECKING, TypedDict
 from uuid import UUID
 
 from django.contrib.gis.db.models import Extent
 from django.db.models import Prefetch, Q, QuerySet
 from django.db.models.functions import Coalesce
+from django.utils import timezone
 
 from inspection.models import Asset, AssetKind
 from inspection.selectors import UNREAD_OF_A_LINE
@@ -15,6 +17,7 @@ from missions.selectors.mission_list import count_of, with_simulated_uav
 from workspace.models import OPEN_STATES, AuditEntry, Job, Organisation
 
 PLAN_MISSION = "missions.tasks.plan_mission"
+SHOWN_AFTER_END = timedelta(hours=1)  # on live pages
 
 
 def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, deleted: bool = False) -> Mission:
@@ -46,6 +49,13 @@ def state_of_mission(organisation_id: int, mission_id: UUID) -> MissionState | N
     """Return the mission's state; None if it does not exist."""
     found = Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("state", flat=True).first()
     return None if found is None else MissionState(found)
+
+
+def missions_in_the_air(organisation_id: int, *, limit: int) -> list[UUID]:
+    """Return the newest missions that fly, or ended within the last hour, as live pages show them."""
+    shown = Q(state__in=(MissionState.DISPATCHED, MissionState.ACTIVE)) | Q(ended_at__gt=timezone.now() - SHOWN_AFTER_END)
+    rows = Mission.objects.filter(shown, organisation=organisation_id, deleted_at=None).order_by("-started_at", "pk")
+    return list(rows.values_list("pk", flat=True)[:limit])
 
 
 def open_plan_of_mission(mission: Mission) -> UUID | None:

@@ -102,6 +102,17 @@ export function setChildren(element, ...children) {
   element.replaceChildren(...shown(children));
 }
 
+/** Resolves once an element has been in sight. @param {Element} element @returns {Promise<void>} */
+export const whenSeen = (element) =>
+  new Promise((resolve) => {
+    const watcher = new IntersectionObserver((entries) => {
+      if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+      watcher.disconnect();
+      resolve();
+    });
+    watcher.observe(element);
+  });
+
 /**
  * Focus the control that takes the place of the focused one when an element is drawn anew: of the same words, else the one at its place.
  *

@@ -16,7 +16,8 @@ try {
 {
   /** @type {HTMLMetaElement | null} */
   const meta = document.querySelector('meta[name="documents"]');
-  const addresses = meta && !("offlineCopy" in document.documentElement.dataset) ? meta.content.split(" ") : [];
+  const isCopy = "offlineCopy" in document.documentElement.dataset;
+  const addresses = meta && !isCopy ? meta.content.split(" ").filter(Boolean) : [];
   /** @type {any} */ (globalThis).earlyRequests = new Map(
     addresses.map((/** @type {string} */ address) => {
       const answer = fetch(address, { credentials: "same-origin", headers: { Accept: "application/json" } });
@@ -24,4 +25,20 @@ try {
       return [address, answer];
     }),
   );
+
+  /* The page's live feed: live/feed.js takes over the socket with the messages that have come. */
+  /** @type {HTMLMetaElement | null} */
+  const feed = document.querySelector('meta[name="feed"]');
+  if (feed && !isCopy) {
+    const socket = new WebSocket(location.origin.replace(/^http/, "ws") + feed.content);
+    /** @type {string[]} */
+    const messages = [];
+    const keep = (/** @type {MessageEvent} */ { data }) => messages.push(data);
+    socket.addEventListener("message", keep);
+    const take = () => {
+      socket.removeEventListener("message", keep);
+      return messages;
+    };
+    /** @type {any} */ (globalThis).earlySocket = { socket, take };
+  }
 }

@@ -13,8 +13,11 @@ register = template.Library()
 @register.simple_tag
 def page_module(name: str) -> SafeString:
     """`{% page_module "js/missions/main.js" %}`"""
-    chunks = [f"{settings.STATIC_URL}{path}" for path in getattr(staticfiles_storage, "chunks", {}).get(name, [])]
-    preloads = format_html_join("\n", '<link rel="modulepreload" href="{}">', ((address,) for address in (*chunks, *_texts())))
+    chunks, later = (
+        [(f"{settings.STATIC_URL}{path}",) for path in getattr(staticfiles_storage, kind, {}).get(name, [])] for kind in ("chunks", "later")
+    )
+    preloads = format_html_join("\n", '<link rel="modulepreload" href="{}">', (*chunks, *((address,) for address in _texts())))
+    preloads += format_html_join("\n", '<link rel="modulepreload" fetchpriority="low" href="{}">', later)
     return format_html('{}\n<script type="module" src="{}"></script>', preloads, staticfiles_storage.url(name))
 
 

@@ -4,7 +4,7 @@ import { find, h } from "../dom.js";
 import { boxAround } from "../domain/geodesy.js";
 import { addSources, setFeatures } from "../map/look/style.js";
 import { createMap } from "../map/map_view.js";
-import { maplibre } from "../map/maplibre.js";
+import { loadMapLibrary, maplibre } from "../map/maplibre.js";
 import { t } from "../text.js";
 import { outlineOf, parseGeometry, pointText, positionsOf } from "./geometry_text.js";
 
@@ -12,6 +12,7 @@ import { outlineOf, parseGeometry, pointText, positionsOf } from "./geometry_tex
 
 /** @type {NodeListOf<HTMLElement>} */
 const fields = document.querySelectorAll("[data-geometry]");
+await loadMapLibrary();
 for (const field of fields) {
   const text = find(field, "textarea", HTMLTextAreaElement);
   const note = find(field, ".geometry-note");

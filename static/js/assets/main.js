@@ -3,6 +3,7 @@
 import { byId, find, h, segments, term } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { countsText } from "../map/look/region_words.js";
+import { loadMapLibrary } from "../map/maplibre.js";
 import { readPage } from "../page/chrome.js";
 import { t, tn } from "../text.js";
 import { coordinateText, dateText, exactHeightText, lengthText, percentText, voltageText, whenText } from "../units.js";
@@ -260,6 +261,7 @@ const ASSETS = {
     begin: t("Import an OpenStreetMap file, or download the visible area from OpenStreetMap."),
   },
 };
+await loadMapLibrary();
 const records = mountRecordPage(ASSETS);
 
 byId("asset-kinds").append(

@@ -5,6 +5,7 @@ import { byId, h, icon, setChildren } from "../dom.js";
 import { boxAround } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { followLive } from "../live/jobs.js";
+import { loadMapLibrary } from "../map/maplibre.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { confirmAct } from "../page/confirm.js";
 import { announce, toast } from "../page/toast.js";
@@ -31,6 +32,7 @@ let job = null;
 /** What a click on the map sets: the launch site at this place of the schedule; null: a further one. @type {{ site: number | null } | null} */
 let placing = null;
 
+await loadMapLibrary();
 const {
   page: groundPage,
   map,

@@ -5,6 +5,7 @@ import { byId } from "../dom.js";
 import { boxAround } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { coordinatesOf } from "../ground/record_list.js";
+import { loadMapLibrary } from "../map/maplibre.js";
 import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
@@ -41,6 +42,7 @@ let refreshes = 0; // of the chosen issue
 let looks = 0;
 let lastLook = 0; // of those that were answered
 
+await loadMapLibrary();
 const { page, map, layout, open } = mountGroundPage({
   ringsItself: true,
   isBusy: () => placed !== null,

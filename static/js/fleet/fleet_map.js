@@ -7,7 +7,7 @@ import { setAttribution } from "../map/furniture.js";
 import { storeLastView } from "../map/last_view.js";
 import { optionsOf, rememberedUnder } from "../map/look/under.js";
 import { createMap } from "../map/map_view.js";
-import { maplibre } from "../map/maplibre.js";
+import { loadMapLibrary, maplibre } from "../map/maplibre.js";
 import { mountRegionSwitcher } from "../map/region_switcher.js";
 import { onTheme } from "../page/theme.js";
 import { t } from "../text.js";
@@ -17,6 +17,9 @@ import { t } from "../text.js";
 /** @import { Chosen, FleetBase, FleetMap, FleetPage, Ground, Places, Position, Tab, Uav } from "./types.d.ts" */
 
 const ROUND_DEG = 0.02; // margin round a single place
+
+export { loadMapLibrary };
+
 const NEAR_ZOOM = 13;
 const ROW_PX = 22;
 const SQUARE_PX = 26;

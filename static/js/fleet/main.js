@@ -224,7 +224,8 @@ function remember() {
 async function showMap() {
   const isSeen = wide.matches || byId("fleet-body").dataset.open;
   if (!isSeen || store.state.uavs === null) return;
-  const { createFleetMap } = await import("/static/js/fleet/fleet_map.js");
+  const { createFleetMap, loadMapLibrary } = await import("/static/js/fleet/fleet_map.js");
+  await loadMapLibrary();
   map ??= createFleetMap({
     page,
     rows: store.state,

@@ -2,7 +2,7 @@
 
 import { byId } from "../dom.js";
 import { piecesOf, routeClicks } from "../map/click_router.js";
-import { mountControls } from "../map/controls.js";
+import { mapBindings, mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { optionsOf } from "../map/look/under.js";
@@ -85,7 +85,7 @@ export function mountGroundMap(page, on = {}) {
   return {
     map,
     view,
-    bindings: controls.bindings,
+    bindings: mapBindings(() => controls),
     ready: view.ready,
     opensAtPlace: view.opensAtPlace,
     fit,

@@ -4,6 +4,7 @@ import { ApiError, get, patch, post, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { boxAround } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
+import { loadMapLibrary } from "../map/maplibre.js";
 import { announce, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
 import { t, tn } from "../text.js";
@@ -39,6 +40,7 @@ const store = createStore(FIRST_STATE);
 let changesLayer = null;
 let lookedAt = 0;
 
+await loadMapLibrary();
 const { page, map, open } = mountGroundPage({
   click(_thing, _place, point) {
     const change = changeAt(point);

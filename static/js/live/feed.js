@@ -62,6 +62,22 @@ function socketAddress(mission) {
 }
 
 /**
+ * The socket that early.js has opened to an address, once, and what has come over it; null where there is none, or where it was lost.
+ *
+ * @param {string} address
+ * @returns {{ socket: WebSocket, messages: string[] } | null}
+ */
+function openedEarly(address) {
+  /** @type {{ socket: WebSocket, take: () => string[] } | undefined} */
+  const early = /** @type {any} */ (globalThis).earlySocket;
+  if (early?.socket.url !== address) return null;
+  delete (/** @type {any} */ (globalThis).earlySocket);
+  const { socket } = early;
+  const isThere = socket.readyState === socket.CONNECTING || socket.readyState === socket.OPEN;
+  return isThere ? { socket, messages: early.take() } : null;
+}
+
+/**
  * Opens a feed: feed.shown.uavs is a Map by id, feed.now_ms() the server's time, feed.close() the end.
  *
  * @param {FeedOptions} [options]
@@ -166,7 +182,9 @@ class Feed {
   #connect() {
     if (!this.#Socket || this.#isOver) return;
     this.#sequence = 0;
-    const opened = new this.#Socket(socketAddress(this.#mission));
+    const address = socketAddress(this.#mission);
+    const early = openedEarly(address);
+    const opened = early?.socket ?? new this.#Socket(address);
     this.#socket = opened;
     const isCurrent = () => this.#socket === opened && !this.#isOver;
     opened.addEventListener("message", ({ data }) => {
@@ -180,6 +198,9 @@ class Feed {
     });
     this.#expectMessage(CONNECT_WITHIN_MS);
     this.#timers.first = setTimeout(() => this.#startAsking(), FIRST_MESSAGE_MS);
+    queueMicrotask(() => {
+      for (const data of early?.messages ?? []) if (isCurrent()) this.#receive(JSON.parse(data));
+    });
   }
 
   #expectMessage(within_ms = FEED_LOST_MS) {

@@ -110,16 +110,20 @@ export function mountControls(view, page, act) {
       byId("map-empty").hidden = !ground || ground.extent !== null;
     },
     closeTop: measure.end,
-    bindings: [
-      { keys: ["m"], words: t("Measure"), act: () => (measure.isOn() ? measure.end() : measure.start()) },
-      {
-        keys: ["c"],
-        words: t("Copy the coordinates at the pointer, or of the middle"),
-        act: () => copyPlace(pointer ?? map.getCenter().toArray()),
-      },
-    ],
+    switchMeasure: () => (measure.isOn() ? measure.end() : measure.start()),
+    copyPlace: () => copyPlace(pointer ?? map.getCenter().toArray()),
   };
 }
+
+/** Keys of a map, which may come later than the page. @param {() => Pick<MapControls, "switchMeasure" | "copyPlace"> | undefined} controls */
+export const mapBindings = (controls) => [
+  { keys: ["m"], words: t("Measure"), act: () => controls()?.switchMeasure() },
+  {
+    keys: ["c"],
+    words: t("Copy the coordinates at the pointer, or of the middle"),
+    act: () => void controls()?.copyPlace(),
+  },
+];
 
 /**
  * Limit the focus ring to the keyboard: a click into the map focuses it too, and a later key would show the ring. Tests read the screen

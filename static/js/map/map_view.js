@@ -17,6 +17,9 @@ import { tilesAddress } from "./tiles_address.js";
 /** @type {Box} */
 const WORLD = [-12, 25, 40, 62]; // where there are no map data
 
+/** What a map shows until it is moved, where the address and the account name no place. @param {{ bounds?: Box | null, extent?: Box | null }} opening */
+export const openingBox = ({ bounds, extent }) => bounds ?? extent ?? WORLD;
+
 const NEAREST_FIT = 15;
 const CONTROLS_PX = 68; // they are at the right edge
 const FOOT_GAP_PX = 24;
@@ -51,7 +54,7 @@ export function createMap(container, opening) {
     ...(opened
       ? { center: opened.centre, zoom: opened.zoom }
       : {
-          bounds: bounds ?? extent ?? WORLD,
+          bounds: openingBox({ bounds, extent }),
           fitBoundsOptions: { padding: paddingIn(container), maxZoom: NEAREST_FIT },
         }),
     ...(copiedAt === null ? {} : { transformRequest: (url) => ({ url, headers: { [COPY_HEADER]: copiedAt } }) }),

@@ -2,7 +2,6 @@
 
 import type { GeoJSONSource, Map as MapLibreMap } from "/static/lib/maplibre-gl/maplibre-gl.mjs";
 import type { Palette } from "../domain/palette.js";
-import type { Binding } from "../page/keyboard.js";
 
 export type Position = [number, number];
 export type Box = [number, number, number, number];
@@ -147,7 +146,8 @@ export interface MapControls {
   click(place: Position): boolean;
   setGround(ground: Ground | null): void;
   closeTop(): boolean;
-  bindings: Binding[];
+  switchMeasure: () => unknown;
+  copyPlace: () => Promise<void>;
 }
 
 /** Shows words beside the pointer; a null key takes them away. `make` may call `fill` later with other content. */

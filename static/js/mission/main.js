@@ -1,7 +1,10 @@
 /** The operator's map: composes the page and loads its data. */
 
 import { ApiError, get } from "../api.js";
-import { byId, h } from "../dom.js";
+import { byId, h, whenSeen } from "../dom.js";
+import { mapBindings } from "../map/controls.js";
+import { openingBox } from "../map/map_view.js";
+import { mapLibraryAfter } from "../map/maplibre.js";
 import { readBriefing } from "../offline/briefing.js";
 import { copiedAt } from "../offline_copy.js";
 import { readPage, startChrome } from "../page/chrome.js";
@@ -117,19 +120,37 @@ const flying = createFlying(store, { failed: actions.failed, page });
 /** @type {ReturnType<typeof mountUavs> | null} */
 let uavPanel = null;
 const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
-const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel?.askForUav(position) });
+/** @type {ReturnType<typeof mountMap> | null} */
+let map = null; // comes later than the rest of the page
+/** @type {() => void} */
+let showUsable = () => {};
+/** @type {Promise<void>} */
+const usable = new Promise((resolve) => {
+  showUsable = resolve;
+});
+const mountedMap = mapLibraryAfter(usable).then(() => {
+  map = mountMap(store, actions, page, { askForUav: (position) => uavPanel?.askForUav(position) });
+  return map;
+});
+/** @param {(map: ReturnType<typeof mountMap>) => unknown} act */
+const onMap = (act) => void mountedMap.then(act);
+const boxOfMap = () => map?.box() ?? openingBox(page);
+const centreOfMap = () => {
+  const [west, south, east, north] = openingBox(page);
+  return map?.centre() ?? [(west + east) / 2, (south + north) / 2];
+};
 /** @param {AssetFeature} feature */
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
 /** @param {number[][]} positions */
 const showPlaces = (positions) => {
   layout.showMap();
-  map.showPlaces(positions);
+  onMap((there) => there.showPlaces(positions));
 };
 showStages();
 mountHeader(store, actions, page.canPlan, {
   canCopy: page.canFly,
   canCurate: page.canCurate,
-  showPlace: (position) => map.goTo({ position, zoom: 14 }),
+  showPlace: (position) => onMap((there) => there.goTo({ position, zoom: 14 })),
   showPlaces,
   addUavAt: (position) => uavPanel?.askForUav(position),
 });
@@ -150,8 +171,11 @@ const rehearsing = mountRehearsal(store, createRehearsing(store, { isStage }), {
 });
 flying.watch();
 mountSavedState(store, page.canPlan);
-mountTargets(store, actions, page.canPlan, map);
-uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
+mountTargets(store, actions, page.canPlan, {
+  show: (target) => onMap((there) => there.show(target)),
+  ground: mountedMap.then(({ ground }) => ground),
+});
+uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: centreOfMap });
 if (page.canPlan) {
   mountOptions(store, actions, page.canPlan);
   mountFlightOptions(store, actions);
@@ -159,14 +183,14 @@ if (page.canPlan) {
 } else mountOptionsRead(store);
 mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces });
 mountFoot(store, actions, { approve: () => void flying.approve(), rehearse: rehearsing.begin });
-const grounds = createGrounds();
-mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });
+const grounds = createGrounds(whenSeen(byId("route-list")));
+mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map?.showPoint(position) });
 mountProfile(store, { grounds });
 mountWhy(store, actions, { canPlan: page.canPlan });
 const finder = mountFinder({
   canPlan: page.canPlan,
-  box: () => map.box(),
-  show: (feature) => map.show(targetOfFeature(feature)),
+  box: boxOfMap,
+  show: (feature) => onMap((there) => there.show(targetOfFeature(feature))),
   add: (feature) => void actions.addWhole(targetOfFeature(feature)),
   addAll: (features) => void actions.addFound(features.map(targetOfFeature)),
   things: () =>
@@ -176,7 +200,7 @@ const finder = mountFinder({
       icon: "uav",
       detail: base_name ?? "",
     })),
-  goTo: (place) => map.goTo(place),
+  goTo: (place) => onMap((there) => there.goTo(place)),
 });
 if (page.canPlan)
   mountTools(store, { pasteList: () => askForList(actions), savedSelections: () => showSelections(store, actions) });
@@ -186,11 +210,11 @@ startChrome({
     { keys: ["/"], words: t("Find an asset"), act: finder.focus },
     ...(page.canPlan ? planningKeys() : []),
     ...rehearsing.bindings,
-    ...map.bindings,
+    ...mapBindings(() => map?.controls),
     scene.binding,
-    { keys: ["f"], words: t("Fit the mission"), act: () => map.fit() },
-    { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
-    { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
+    { keys: ["f"], words: t("Fit the mission"), act: () => map?.fit() },
+    { keys: ["+", "="], words: t("Zoom in"), act: () => map?.zoom(1) },
+    { keys: ["-"], words: t("Zoom out"), act: () => map?.zoom(-1) },
     { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
     { keys: ["]"], words: t("Fold the routes"), act: layout.foldDock },
     { keys: ["escape"], words: page.canPlan ? t("Close, back to points") : t("Close"), act: closeTop },
@@ -295,7 +319,7 @@ function shiftChosen(step) {
 }
 
 function closeTop() {
-  if (map.closeTop()) return;
+  if (map?.closeTop()) return;
   if (store.state.caught) actions.dropCaught();
   else if (store.state.why) store.update({ why: null });
   else if (store.state.problem) store.update({ problem: null });
@@ -305,11 +329,11 @@ function closeTop() {
 
 function placeInTheMiddle() {
   if (store.state.tool === "rally") {
-    actions.addRallyPoint(map.centre());
+    actions.addRallyPoint(centreOfMap());
     return true;
   }
   if (store.state.tool === "zone") {
-    map.askForZone({ centre: map.centre() });
+    onMap((there) => there.askForZone({ centre: there.centre() }));
     return true;
   }
   if (store.state.tool !== "place") return false;
@@ -361,7 +385,7 @@ async function load() {
     store.update({ fleet: await fleet });
     if (page.mission) await actions.open(page.mission);
     if (page.mission && copiedAt !== null) {
-      const { element } = await readBriefing(page.mission, (position) => map.showPoint(position));
+      const { element } = await readBriefing(page.mission, (position) => map?.showPoint(position));
       byId("notices").after(element);
     } else if (page.canPlan) actions.openDraft();
     isLoaded = true;
@@ -373,8 +397,10 @@ async function load() {
     if (!(error instanceof ApiError)) throw error;
   }
   document.documentElement.dataset.usable = "true";
-  await map.ready;
-  if (!store.state.plan && !map.opensAtPlace) map.fit({ animate: false });
+  showUsable();
+  const { ready, opensAtPlace, fit } = await mountedMap;
+  await ready;
+  if (!store.state.plan && !opensAtPlace) fit({ animate: false });
   document.documentElement.dataset.loaded = "true";
 }
 

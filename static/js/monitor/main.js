@@ -5,6 +5,8 @@ import { byId } from "../dom.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
+import { mapBindings } from "../map/controls.js";
+import { mapLibraryAfter } from "../map/maplibre.js";
 import { copiedAt } from "../offline_copy.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountPlannedStarts } from "../page/planned_starts.js";
@@ -78,14 +80,33 @@ const store = createStore(
 /** @param {number} id of a UAV */
 const pick = (id) => store.update({ chosen: id, isFollowing: store.state.isFollowing && store.state.chosen === id });
 const layout = mountWorkbench({ dockOnPhone: null });
-const map = mountMonitorMap(store, page, { pick });
+/** @type {ReturnType<typeof mountMonitorMap> | null} */
+let map = null; // comes later than the rest of the page
+/** @type {() => void} */
+let showUsable = () => {};
+/** @type {Promise<void>} */
+const usable = new Promise((resolve) => {
+  showUsable = () => {
+    document.documentElement.dataset.usable = "true";
+    resolve();
+  };
+});
+const mountedMap = mapLibraryAfter(usable).then(() => {
+  map = mountMonitorMap(store, page, { pick });
+  return map;
+});
+/** @param {(map: ReturnType<typeof mountMonitorMap>) => unknown} act */
+const onMap = (act) => void mountedMap.then(act);
 const scene = mountSceneOpener(() => {
   const mission = missionSeen(store.state);
   return mission !== null && { mission, now_ms: () => feed.shown_ms(), follow: followFeed };
 });
 const commanding = page.canFly ? createCommanding(store, page) : null;
 const narrow = mountNarrow();
-createMissionDetails(store);
+createMissionDetails(
+  store,
+  mountedMap.then(({ ready }) => ready),
+);
 mountHead(store, page);
 const fleetFilter = page.mission === null ? mountFleetFilter(store) : null;
 mountCards(store, {
@@ -93,7 +114,7 @@ mountCards(store, {
   pick,
   close: () => store.update({ chosen: null, isFollowing: false }),
   showShown: (shown, all) => fleetFilter?.notify(shown, all),
-  jumpTo: (id) => map.jumpTo(id),
+  jumpTo: (id) => onMap((there) => there.jumpTo(id)),
   follow: () => store.update({ isFollowing: !store.state.isFollowing }),
   commanding,
 });
@@ -102,7 +123,7 @@ const alertKeys = mountAlerts(store, page, { pick, commanding, showBoard: narrow
 mountBoard(store, {
   show(mission, place) {
     const position = store.state.details.get(mission)?.targets[place]?.position;
-    if (position) map.showPlace(position);
+    if (position) onMap((there) => there.showPlace(position));
   },
   readOlder: createEventReading(store, page).readOlder,
 });
@@ -170,22 +191,22 @@ startChrome({
     {
       keys: ["enter"],
       words: t("Show the chosen UAV on the map"),
-      act: (event) => !isOnControl(event) && map.jumpTo(store.state.chosen),
+      act: (event) => !isOnControl(event) && (map?.jumpTo(store.state.chosen) ?? false),
     },
     ...alertKeys,
     ...commandKeys,
-    ...map.bindings,
+    ...mapBindings(() => map?.controls),
     scene.binding,
-    { keys: ["f"], words: t("Fit what flies"), act: () => map.fit() },
-    { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
-    { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
+    { keys: ["f"], words: t("Fit what flies"), act: () => map?.fit() },
+    { keys: ["+", "="], words: t("Zoom in"), act: () => map?.zoom(1) },
+    { keys: ["-"], words: t("Zoom out"), act: () => map?.zoom(-1) },
     { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
     { keys: ["]"], words: t("Fold alerts and targets"), act: layout.foldRight },
     {
       keys: ["escape"],
       words: t("Close"),
       act() {
-        if (!map.closeTop()) store.update({ chosen: null, isFollowing: false });
+        if (!map?.closeTop()) store.update({ chosen: null, isFollowing: false });
       },
     },
   ],
@@ -245,23 +266,24 @@ async function load() {
   const loading = byId("map-loading");
   store.listen(["isWhole", "missions", "details"], (state) => {
     loading.hidden ||= copiedAt !== null || hasArrived(state); // a mission that comes later is no reason to cover the map
-    if (loading.hidden) document.documentElement.dataset.usable = "true";
+    if (loading.hidden) showUsable();
   });
   const approved =
     copiedAt !== null && page.mission
-      ? await showCopy(store, page.mission, (position) => map.showPlace(position))
+      ? await showCopy(store, page.mission, (position) => onMap((there) => there.showPlace(position)))
       : null;
-  await map.ready;
+  const there = await mountedMap;
+  await there.ready;
   if (approved) {
-    map.showApproved(approved);
-    if (!map.opensAtPlace) map.fit({ animate: false });
+    there.showApproved(approved);
+    if (!there.opensAtPlace) there.fit({ animate: false });
   }
   document.documentElement.dataset.loaded = "true";
-  let wasFitted = map.opensAtPlace;
+  let wasFitted = there.opensAtPlace;
   store.listen(["details", "uavs"], ({ details, uavs, missions }) => {
     if (wasFitted || !uavs.length || missions.some(({ id }) => !details.has(id))) return;
     wasFitted = true;
-    map.fit({ animate: false });
+    there.fit({ animate: false });
   });
 }
 

@@ -45,8 +45,11 @@ export function addReport(flown, uav, position, at_ms, gap_s = GAP_S) {
   return true;
 }
 
-/** @param {MonitorStore} store */
-export function createMissionDetails(store) {
+/**
+ * @param {MonitorStore} store
+ * @param {Promise<unknown>} [mapReady] lines are read once the map can show them
+ */
+export function createMissionDetails(store, mapReady = Promise.resolve()) {
   /** @type {Map<string, number>} */
   const asked = new Map(); // mission → revision that was read
   /** @type {Flown} */
@@ -60,7 +63,9 @@ export function createMissionDetails(store) {
     try {
       const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${id}`));
       store.update({ details: new Map([...store.state.details, [id, data]]) });
-      if (isFirst) await readFlown(id);
+      if (!isFirst) return;
+      await mapReady;
+      await readFlown(id);
     } catch (error) {
       asked.delete(id); // again with the next change
       if (!(error instanceof ApiError)) throw error;

@@ -3,6 +3,7 @@
 import { signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { routeNumber } from "../domain/palette.js";
+import { loadMapLibrary } from "../map/maplibre.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountFindings } from "../photos/findings_list.js";
 import { mountPhotos } from "../photos/section.js";
@@ -42,6 +43,7 @@ const FALLS = ["crashed", "down"];
 /** @type {ReportPage} */
 const page = readPage();
 const layout = mountLayout();
+await loadMapLibrary();
 const map = createReportMap(page, { onPick: choose, onIncident: showIncident });
 const dock = createDock({ onChoose: choose });
 const coverage = mountCoverage({ canPlan: page.canFly });

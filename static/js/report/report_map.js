@@ -5,7 +5,7 @@ import { byId, h, icon } from "../dom.js";
 import { LOST } from "../domain/certainty.js";
 import { boxAround } from "../domain/geodesy.js";
 import { routeLetter } from "../domain/palette.js";
-import { mountControls } from "../map/controls.js";
+import { mapBindings, mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
 import { optionsOf } from "../map/look/under.js";
@@ -219,7 +219,7 @@ export function createReportMap(page, { onPick, onIncident }) {
   return {
     ready,
     fit,
-    bindings: controls.bindings,
+    bindings: mapBindings(() => controls),
     closeTop: controls.closeTop,
     /** @param {number} steps */
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),

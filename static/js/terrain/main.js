@@ -4,6 +4,7 @@ import { get, post, remove } from "../api.js";
 import { byId, find, h } from "../dom.js";
 import { boxAround, pathLength_m } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
+import { loadMapLibrary } from "../map/maplibre.js";
 import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { mountGroundPanel } from "./ground_panel.js";
@@ -37,6 +38,7 @@ let along = null;
 let cursor = null;
 let asked = 0;
 
+await loadMapLibrary();
 const { page, map, open } = mountGroundPage({
   click: (thing, position) => (tool === "profile" ? clickInProfile(thing, position) : showHeight(position)),
   hover: (_thing, point) => pointAlong(point),

@@ -4,6 +4,7 @@ import { byId, find, h, segments, term } from "../dom.js";
 import { scheduleText } from "../domain/schedule_words.js";
 import { bandDrawing, heightsText, limitText } from "../domain/zone_heights.js";
 import { mountRecordPage } from "../ground/record_page.js";
+import { loadMapLibrary } from "../map/maplibre.js";
 import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
 import { clockText, coordinateText, dayText, lengthText, minutesAheadOfUtc, whenText, zoneText } from "../units.js";
@@ -208,6 +209,7 @@ const ZONES = {
     begin: t("Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file."),
   },
 };
+await loadMapLibrary();
 const records = mountRecordPage(ZONES);
 
 const importButton = byId("zone-import");

@@ -364,3 +364,17 @@ test("a page whose websocket is refused because too many are open asks, says so,
   assert.equal(feed.state, "live");
   feed.close();
 });
+
+test("a socket that early.js has opened is taken over with the messages that have come", async (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  Socket.all = [];
+  const early = Object.assign(new Socket("early"), { url: "wss://spanwise.example/ws/live", OPEN: 1, CONNECTING: 0 });
+  const first = JSON.stringify({ server_time: TIME, ...snapshot(4, { uavs: [{ id: 7 }] }) });
+  globalThis.earlySocket = { socket: early, take: () => [first] };
+  const feed = openFeed({ Socket });
+  await settle();
+  assert.deepEqual(Socket.all, [early]);
+  assert.deepEqual([...feed.shown.uavs.keys()], [7]);
+  assert.deepEqual(early.sent, [{ type: "ack", sequence: 4 }]);
+  feed.close();
+});

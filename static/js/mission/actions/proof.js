@@ -10,7 +10,7 @@ import { isPlanCurrent } from "../plan/plan_view.js";
 import { cancelJob } from "./plan_beside.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { JobLink, Mission } from "../../api_types.d.ts" */
+/** @import { Job, JobLink, Mission } from "../../api_types.d.ts" */
 /** @import { MissionContext, MissionPageState, MissionStore, PlanProof, PlanResult, ShownPlan } from "../types.d.ts" */
 
 const MAX_PROVEN_TARGETS = 40;
@@ -80,6 +80,38 @@ function betterWords({ plan, selection }, now, found) {
   return improvementWords(plan.result, found);
 }
 
+/** Null where there is no such job any more. @param {unknown} error */
+function orGone(error) {
+  if (error instanceof ApiError && error.status === 404) return null;
+  throw error;
+}
+
+/**
+ * Follow the proof of a mission's plan to its end. One is begun where the mission names none, or one that is gone or was cancelled.
+ *
+ * @param {string} mission
+ * @param {string | null} known the job that the mission names
+ * @param {{ signal: AbortSignal, onJob: (job: string) => void, onProgress: (job: Job) => void }} how
+ */
+export async function endOfProof(mission, known, { signal, onJob, onProgress }) {
+  let hasRun = false; // while it was followed
+  /** @param {string} job */
+  const follow = (job) => {
+    onJob(job);
+    return followLive(job, {
+      signal,
+      onProgress(now) {
+        hasRun = true;
+        onProgress(now);
+      },
+    });
+  };
+  const ended = known && (await follow(known).catch(orGone));
+  if (known && ended && (ended.state !== "cancelled" || hasRun)) return { job: known, ended };
+  const { data } = /** @type {Answer<JobLink>} */ (await post(`/missions/${mission}/proof`, {}));
+  return { job: data.job, ended: await follow(data.job) };
+}
+
 /**
  * @param {MissionContext} context
  * @param {(made: ShownPlan, asked: MissionPageState["selection"]) => void} show
@@ -101,11 +133,9 @@ export function createProof({ store, page }, show) {
     const own = new AbortController();
     following = own;
     try {
-      const { data } = /** @type {Answer<JobLink>} */ (await post(`/missions/${mission}/proof`, {}));
-      if (own.signal.aborted) return;
-      put(now, { job: data.job });
-      const ended = await followLive(data.job, {
+      const { job, ended } = await endOfProof(mission, store.state.plan?.result.proof ?? null, {
         signal: own.signal,
+        onJob: (job) => put(now, { job }),
         // several plans are looked for in turn, and the server tells the progress of each
         onProgress: ({ progress }) => put(now, { progress: Math.max(progress, store.state.proof?.progress ?? 0) }),
       });
@@ -115,7 +145,7 @@ export function createProof({ store, page }, show) {
       if (own.signal.aborted || stored.planned_at !== now.planned_at) return;
       put(now, { isOver: true, isFinished: ended.state === "done" });
       if (stored.plan) learn(store, stored.plan);
-      const better = /** @type {PlanResult | null} */ (ended.result && { ...ended.result, job: data.job });
+      const better = /** @type {PlanResult | null} */ (ended.result && { ...ended.result, job });
       const words = better ? betterWords(store.state, now, better) : "";
       if (!words) return;
       put(now, { better, words });

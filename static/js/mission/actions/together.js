@@ -48,13 +48,13 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, s
     }
   }
 
-  async function ask() {
+  async function ask({ isFresh = false } = {}) {
     const { mission, saving, planning } = store.state;
     if (!mission || saving || isAsking) return;
     if (planning && Date.now() - reportedAt <= PRESENCE_MS) return;
     isAsking = true;
     try {
-      if (planning) {
+      if (planning || isFresh) {
         await report(); // other users' saves are taken over once the plan has arrived
         return;
       }
@@ -82,18 +82,18 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, s
     if (!store.state.planning) await followGround(data);
   }
 
-  function start() {
+  function start({ isFresh = false } = {}) {
     clearInterval(timer);
     if (document.hidden) return;
     timer = setInterval(() => void ask(), POLL_MS);
-    void ask();
+    void ask({ isFresh });
   }
 
   store.listen(["mission"], ({ mission }) => {
     if (!mission || mission.id === watched) return;
     watched = mission.id;
     reportedAt = 0;
-    start();
+    start({ isFresh: true }); // it was read a moment ago
   });
   let wasPlanning = false;
   store.listen(["planning"], ({ planning }) => {
@@ -124,7 +124,8 @@ function createGroundReading(store, readFleet) {
     const { mission } = store.state;
     if (!mission) return;
     const { id, plan } = mission;
-    const known = groundRead.id === id ? groundRead.revision : plan?.ground_revision;
+    const read = store.state.ground?.revision ?? plan?.ground_revision; // when the mission was read, its causes were those of this or later
+    const known = groundRead.id === id ? groundRead.revision : read;
     const isOnOtherGround = plan && known !== present.ground_revision;
     const hasOtherUavs = JSON.stringify(mission.uav_changes) !== JSON.stringify(present.uav_changes);
     if (!isOnOtherGround && !hasOtherUavs) return;

@@ -125,7 +125,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     askForZone,
     /** @param {number} steps */
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),
-    bindings: controls.bindings,
+    controls,
     ground: { map, onRecolour: (/** @type {() => void} */ act) => recolouring.add(act) },
     closeTop: () => controls.closeTop() || picking.close() || Boolean(layers.reach()?.close()),
     centre: () => map.getCenter().toArray(),

@@ -37,11 +37,13 @@ export function thinned(positions, most = MAX_VERTICES) {
 }
 
 /**
- * Terrain under routes, requested once for each route: [{ at_m, ground_m or null }], and zones near it.
+ * Terrain under routes, requested once for each route: [{ at_m, ground_m or null }], and zones near it; not before the list of routes
+ * has been in sight.
  *
+ * @param {Promise<unknown>} seen
  * @returns {(route: Pick<ShownRoute, "waypoints" | "length_m">) => Promise<GroundUnder>}
  */
-export function createGrounds() {
+export function createGrounds(seen = Promise.resolve()) {
   /** @type {WeakMap<ShownRoute["waypoints"], Promise<GroundUnder>>} */
   const known = new WeakMap();
   return (route) => {
@@ -49,11 +51,10 @@ export function createGrounds() {
     const before = known.get(waypoints);
     if (before) return before;
     const line = thinned(waypoints.map(({ position }) => position));
-    const asked = post("/terrain/profile", {
-      line,
-      step_m: Math.max(5, length_m / MAX_STEPS),
-      near_m: NEAR_ZONE_M,
-    }).then(({ data }) => groundOf(/** @type {Profile} */ (data), length_m));
+    const body = { line, step_m: Math.max(5, length_m / MAX_STEPS), near_m: NEAR_ZONE_M };
+    const asked = seen
+      .then(() => post("/terrain/profile", body))
+      .then(({ data }) => groundOf(/** @type {Profile} */ (data), length_m));
     asked.catch(() => known.delete(waypoints)); // requested again the next time
     known.set(waypoints, asked);
     return asked;

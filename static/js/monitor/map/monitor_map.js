@@ -165,7 +165,10 @@ class MonitorMap {
     showTipsOnly(map, { controls: this.#controls, tip });
     this.ready = this.#view.ready.then(() => this.#start());
     this.opensAtPlace = this.#view.opensAtPlace && !this.#view.opensAtLastView; // UAVs in flight come before the last view
-    this.bindings = this.#controls.bindings;
+  }
+
+  get controls() {
+    return this.#controls;
   }
 
   closeTop() {

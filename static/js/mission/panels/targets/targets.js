@@ -18,6 +18,7 @@ import { refreshRow, targetRow } from "./row.js";
 /** @import { mountMap } from "../../map/map_panel.js" */
 /** @import { PlanViews } from "../../targets/target_menu.js" */
 /** @import { Choosing } from "./choosing.js" */
+/** @typedef {Awaited<ReturnType<typeof mountMap>["ground"]>} MapGround */
 /** @import { GroupActs } from "./group.js" */
 
 /**
@@ -38,7 +39,7 @@ const SHOWN_FIRST = 40;
  * @param {MissionStore} store
  * @param {MissionActions} actions
  * @param {boolean} canPlan
- * @param {Pick<ReturnType<typeof mountMap>, "show" | "ground">} map
+ * @param {{ show: (target: PickedTarget) => unknown, ground: Promise<MapGround> }} map
  */
 export function mountTargets(store, actions, canPlan, map) {
   let showAll = false;
@@ -223,18 +224,18 @@ function more(target, actions) {
  *
  * @param {HTMLElement} list
  * @param {MissionActions} actions
- * @param {Pick<ReturnType<typeof mountMap>, "ground">} map
+ * @param {{ ground: Promise<MapGround> }} map
  * @returns {PlanViews}
  */
 function viewPlanning(list, actions, { ground }) {
   const place = h("div", {});
   list.before(place);
-  return (targets) => {
+  return async (targets) => {
     const [{ asset, kind, label, task }] = targets;
     if (asset === null) return;
     const keys = targets.map(({ key }) => key);
     const opener = document.activeElement;
-    openViewPlan(place, { id: asset, kind }, ground, {
+    openViewPlan(place, { id: asset, kind }, await ground, {
       title: t("Photos of {name}", { name: label }),
       views: task?.views ?? null,
       take: {
