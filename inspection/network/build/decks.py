@@ -22,7 +22,7 @@ MOST_OVER_DECK_M = 300.0  # of pylons of unknown height
 RING_M = 8.0  # no place of a deck is farther from a piece
 MAX_RINGS = 50
 SIMPLER_M = 0.25
-MAX_CORNERS = 400  # of a part; of one with more the convex hull counts
+MAX_CORNERS = 400  # of a bridge; of one with more the convex hull counts
 MAX_BANK_CORNERS = 16  # of a bridge
 TOUCHING_M, OVERLAP = 2.0, 0.2  # of bridges that continue each other: across the ground, and the share of the smaller that both cover
 
@@ -76,9 +76,10 @@ def decks(centre: FloatArray, tagged_m: FloatArray, outlines: BridgeOutlines) ->
     over_centre_m = np.where(np.isnan(counted_m), UNTAGGED_HEIGHT_M[NodeKind.BRIDGE], counted_m)
     guessed_m = np.fmax(OVER_BANKS_M, np.where(outlines.tall_share[rows] > 0.0, counted_m, np.nan))
     over_banks_m = np.where(np.isnan(tagged_m), guessed_m, np.minimum(over_centre_m, OVER_DECK_M))
-    areas, scale = _in_metres(outlines.area[rows])
+    area = _sound(outlines.area[rows])
+    areas, scale = _in_metres(area)
     edges, bridge = _edges(areas)
-    group = _groups(outlines.area[rows], areas)
+    group = _groups(area)
     corner, owner = _bank_corners(areas)
     corner, corner_group = _by_group(corner / scale[owner], group[owner])
     return Decks(edges / scale[bridge, None], bridge, centre[rows], over_centre_m, over_banks_m, group, corner, corner_group)
@@ -90,6 +91,13 @@ def _is_drawn(area: NDArray[np.object_]) -> NDArray[np.bool_]:
         return np.zeros(0, dtype=bool)
     is_finite = np.asarray(np.isfinite(shapely.bounds(area)).all(axis=1), dtype=bool)
     return is_finite & ~shapely.is_empty(area) & (shapely.length(area) > 0.0)
+
+
+def _sound(area: NDArray[np.object_]) -> NDArray[np.object_]:
+    """The areas, and the convex hulls of those that are not valid or have very many corners: to mend them may take minutes."""
+    is_sound = shapely.is_valid(area) & (shapely.get_num_coordinates(area) <= MAX_CORNERS)
+    sound: NDArray[np.object_] = np.where(is_sound, area, shapely.convex_hull(area))
+    return sound
 
 
 def _in_metres(area: NDArray[np.object_]) -> tuple[NDArray[np.object_], FloatArray]:
@@ -114,7 +122,6 @@ def _edges(area: NDArray[np.object_]) -> tuple[FloatArray, IntArray]:
     """The edges (k, 2, 2) of outlines, of holes in them and of rings inside them, and the area of each (k,)."""
     found, owner = [np.zeros((0, 2, 2))], [np.zeros(0, dtype=np.int64)]
     part, of_part = shapely.get_parts(shapely.simplify(area, SIMPLER_M), return_index=True)
-    part = np.where(shapely.get_num_coordinates(part) > MAX_CORNERS, shapely.convex_hull(part), part)
     for _ in range(MAX_RINGS):
         if not len(part):
             break
@@ -130,7 +137,7 @@ def _edges(area: NDArray[np.object_]) -> tuple[FloatArray, IntArray]:
     return np.concatenate(found), np.concatenate(owner)
 
 
-def _groups(area: NDArray[np.object_], in_metres: NDArray[np.object_]) -> IntArray:
+def _groups(area: NDArray[np.object_]) -> IntArray:
     """The number (n,) of each bridge's group: of those that touch, and do not cross one above the other."""
     scale = plane_scale(shapely.bounds(area))
     lonlat_deg = TOUCHING_M / scale.min(axis=1)
@@ -139,7 +146,7 @@ def _groups(area: NDArray[np.object_], in_metres: NDArray[np.object_]) -> IntArr
     one, other = pair[:, pair[0] < pair[1]]
     if len(one):
         size = np.maximum(np.minimum(shapely.area(area[one]), shapely.area(area[other])), 1e-18)
-        both = shapely.intersection(shapely.make_valid(area[one]), shapely.make_valid(area[other]))
+        both = shapely.intersection(area[one], area[other])
         joins = shapely.area(both) <= OVERLAP * size
         one, other = one[joins], other[joins]
     _, label = component_labels(len(area), np.column_stack([one, other]).astype(np.int64))
