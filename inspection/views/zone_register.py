@@ -1,4 +1,4 @@
-"""The register of zones: counts and files."""
+"""The register of zones: counts, files, and edits of many at once."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import shapely
 from django.http import HttpResponseBase
 from django.utils.translation import gettext as _
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -14,11 +14,21 @@ from rest_framework.views import APIView
 from inspection.exporters.rows import Columns, ExportRow
 from inspection.models import ZoneSet
 from inspection.selectors.register.zones import ZoneFilter, zone_counts, zones_that_match
-from inspection.serializers.register import ZoneCountsSerializer
+from inspection.serializers.register import (
+    BulkEditOutputSerializer,
+    BulkUndoOutputSerializer,
+    BulkUndoSerializer,
+    ZoneBulkEditSerializer,
+    ZoneCountsSerializer,
+)
 from inspection.serializers.zones import zone_properties
+from inspection.services.bulk_edits import LimitsCrossed, RowsChanged, change_zones, undo_zone_changes
 from inspection.views.export_files import FILE_ANSWERS, FORMAT, check_number, file_response
 from inspection.views.register_filters import ZONE_FILTERS, zone_filter
+from workspace.api.errors import ApiProblem
+from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer
+from workspace.api.signed_in import SignedInRequest
 
 COLUMNS: Columns = {
     "name": "TEXT", "identifier": "TEXT", "layer": "INTEGER", "zone_set": "TEXT", "restriction": "TEXT", "reason": "TEXT",
@@ -26,6 +36,7 @@ COLUMNS: Columns = {
     "is_active": "BOOLEAN",
 }  # fmt: skip
 BATCH = 500
+NAMED = 3  # zones of a refused edit
 
 
 class ZoneCountsView(APIView):
@@ -85,3 +96,63 @@ def _rows(wanted: ZoneFilter) -> Iterator[ExportRow]:
         stated = {name: values[name] for name in COLUMNS if name in values} | limits | {"schedule": values["schedule_words"]}
         middle = shapely.from_geojson(zone.geometry_json).representative_point()
         yield ExportRow("zones", zone.pk, zone.geometry_json, middle.x, middle.y, stated)
+
+
+class ZoneEdits(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="change_zones",
+        summary="Correct facts of many zones at once",
+        description="All or none. Each zone has its entry in the history, and imports leave it alone as after a correction by itself.",
+        parameters=ZONE_FILTERS,
+        request=ZoneBulkEditSerializer,
+        responses={
+            200: BulkEditOutputSerializer,
+            409: OpenApiResponse(description="Some zones have another revision (`details.changed`), or the filters find another number."),
+        },
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = ZoneBulkEditSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        asked = body.validated_data
+        try:
+            entries = change_zones(
+                values=asked["values"],
+                actor=request.user,
+                revisions={zone["id"]: zone["revision"] for zone in asked["zones"]} if "zones" in asked else None,
+                found=None if "zones" in asked else zones_that_match(zone_filter(request)),
+                expected=asked.get("expected", 0),
+            )
+        except RowsChanged as error:
+            raise _conflict(error) from error
+        except LimitsCrossed as error:
+            names = ", ".join(zone.name for zone in list(error.zones)[:NAMED])
+            message = _("The upper limit would lie below the lower one, such as of %(names)s. Nothing was changed.") % {"names": names}
+            raise ApiProblem(400, "invalid", message, details={"values": [message]}) from error
+        return Response({"changed": len(entries), "entries": entries})
+
+
+def _conflict(error: RowsChanged) -> ApiProblem:
+    if error.is_of_filters:
+        message = _("The filters find another number of zones by now. Nothing was changed.")
+        return ApiProblem(409, "changed", message, details={"found": len(error.keys)})
+    message = _("Others have changed or deleted some of these zones in the meantime. Nothing was changed.")
+    return ApiProblem(409, "changed", message, details={"changed": error.keys})
+
+
+class ZoneEditsUndo(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="undo_zone_changes",
+        summary="Take a correction of many zones back",
+        description="Zones that were edited or imported again since stay as they are.",
+        request=BulkUndoSerializer,
+        responses=BulkUndoOutputSerializer,
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = BulkUndoSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        found = undo_zone_changes(entries=set(body.validated_data["entries"]), actor=request.user)
+        return Response({"undone": found.undone, "kept": found.kept})

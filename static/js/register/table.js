@@ -25,7 +25,7 @@ const NEAR_END_PX = 400;
  * @property {() => unknown} more the next page
  * @property {() => unknown} reload after another order
  * @property {() => [string, string][]} narrowed what narrows the register, as parameters of its address
- * @property {(marked: Marked) => unknown} edit
+ * @property {(marked: Marked<Row>) => unknown} edit
  */
 
 /** @template {{ id: number, geometry: any }} Row */
@@ -186,18 +186,18 @@ export class RegisterTable {
           "button",
           { type: "button", class: "text-button", onclick: () => this.#on.edit(this.#markedRows()) },
           icon("pencil", "small"),
-          tn(count, "Edit {count} asset", "Edit {count} assets", { count: numberText(count) }),
+          this.#register.editWords(count),
         ),
         h("button", { type: "button", class: "text-button", onclick: () => this.#clear() }, t("Unmark")),
       ],
     );
   }
 
-  /** @returns {Marked} */
+  /** @returns {Marked<Row>} */
   #markedRows() {
     return this.#isAll
-      ? { count: this.#total, ids: null, query: this.#on.narrowed() }
-      : { count: this.#marked.size, ids: [...this.#marked.keys()], query: [] };
+      ? { count: this.#total, rows: null, query: this.#on.narrowed() }
+      : { count: this.#marked.size, rows: [...this.#marked.values()], query: [] };
   }
 
   #unmark() {
