@@ -2,6 +2,7 @@
 
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
+import { inAir } from "../domain/in_air.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
@@ -261,7 +262,7 @@ async function load() {
   store.listen(["details", "uavs"], ({ details, uavs, missions }) => {
     if (wasFitted || !uavs.length || missions.some(({ id }) => !details.has(id))) return;
     wasFitted = true;
-    map.fit({ animate: false });
+    if (!map.opensAtLastView || uavs.some(inAir)) map.fit({ animate: false });
   });
 }
 
