@@ -16,6 +16,8 @@ SENTENCES = register_sentences({
     "deleting_assets": gettext_noop("deleting the assets"),
     "deleting_rest": gettext_noop("finishing"),
     "region_deleted": gettext_noop("Deleted"),
+    "waiting_to_be_written": gettext_noop("Waiting to be written"),
+    "file_written": gettext_noop("Written"),
     "file_read": gettext_noop("Read"),
     "file_refused": gettext_noop("Refused"),
     "file_applied": gettext_noop("Applied"),

@@ -8,6 +8,7 @@ from django.conf import settings
 
 from inspection import services
 from inspection.models import ImportProposal
+from inspection.services import exports
 from inspection.services.imports import subscriptions
 from inspection.services.imports.uploads import forget_old_uploads as forget_uploads
 from inspection.services.proposals import pipeline
@@ -53,6 +54,12 @@ def apply_proposal(job_id: str) -> None:
 def delete_region(job_id: str) -> None:
     """Delete a region, completely or not at all."""
     _work(job_id, delete_region_of)
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def export_register(job_id: str) -> None:
+    """Write a file of a register and keep it for its user."""
+    _work(job_id, exports.export_register)
 
 
 @shared_task(time_limit=60, soft_time_limit=50)

@@ -144,6 +144,18 @@ class Asset(models.Model):
                 name="asset_register_idx",
             ),
             models.Index(fields=["updated_at", "id"], name="asset_updated_idx"),
+            models.Index(  # the register by height and by length, as its orders compare them
+                Coalesce("height_m", Value(0.0), output_field=models.FloatField()),
+                "id",
+                condition=Q(vanished_at=None),
+                name="asset_height_idx",
+            ),
+            models.Index(
+                Coalesce("length_m", Value(0.0), output_field=models.FloatField()),
+                "id",
+                condition=Q(vanished_at=None),
+                name="asset_length_idx",
+            ),
         ]
 
     @property

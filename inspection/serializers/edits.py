@@ -81,12 +81,7 @@ class LimitInputSerializer(serializers.Serializer):
     reference = serializers.ChoiceField(choices=HeightReference.choices)
 
 
-class ZoneInputSerializer(serializers.Serializer):
-    """A zone that a user draws or corrects. A limit that is null is not stated, which differs from 0."""
-
-    name = serializers.CharField(max_length=255)
-    geometry = serializers.JSONField(required=False, allow_null=True, help_text="GeoJSON Polygon or MultiPolygon")
-    circle = serializers.JSONField(required=False, allow_null=True, help_text="instead of geometry: centre [lon, lat] and radius_m")
+class ZoneFactsSerializer(serializers.Serializer):
     restriction = serializers.CharField(max_length=100, allow_blank=True, required=False)
     reason = serializers.CharField(max_length=255, allow_blank=True, required=False)
     lower_limit = LimitInputSerializer(required=False, allow_null=True)
@@ -94,19 +89,11 @@ class ZoneInputSerializer(serializers.Serializer):
     schedule = serializers.JSONField(required=False, allow_null=True, help_text="periods as ED-318's limitedApplicability; null = always")
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
-        try:
-            if values.get("circle") is not None or values.get("geometry") is not None:
-                shape, values["circle"] = zone_shape(values.get("geometry"), values.get("circle"))
-                values["geometry"] = stored(shape)
-            elif self.instance is None:
-                raise serializers.ValidationError({"geometry": [_("A zone needs an area or a circle.")]})
-            else:
-                values.pop("circle", None)
-                values.pop("geometry", None)
-            if "schedule" in values:
+        if "schedule" in values:
+            try:
                 values["schedule"] = checked_schedule(values["schedule"], "schedule")
-        except GeometryFault as fault:
-            raise geometry_problem(fault) from fault
+            except GeometryFault as fault:
+                raise geometry_problem(fault) from fault
         for side in ("lower", "upper"):
             if f"{side}_limit" in values:
                 limit = values.pop(f"{side}_limit")
@@ -122,6 +109,28 @@ class ZoneInputSerializer(serializers.Serializer):
         lower, upper = of("lower_limit_m"), of("upper_limit_m")
         if lower is not None and upper is not None and of("lower_reference") == of("upper_reference") and upper < lower:
             raise serializers.ValidationError({"upper_limit": [_("The upper limit lies below the lower one.")]})
+
+
+class ZoneInputSerializer(ZoneFactsSerializer):
+    """A zone that a user draws or corrects. A limit that is null is not stated, which differs from 0."""
+
+    name = serializers.CharField(max_length=255)
+    geometry = serializers.JSONField(required=False, allow_null=True, help_text="GeoJSON Polygon or MultiPolygon")
+    circle = serializers.JSONField(required=False, allow_null=True, help_text="instead of geometry: centre [lon, lat] and radius_m")
+
+    def validate(self, values: dict[str, Any]) -> dict[str, Any]:
+        try:
+            if values.get("circle") is not None or values.get("geometry") is not None:
+                shape, values["circle"] = zone_shape(values.get("geometry"), values.get("circle"))
+                values["geometry"] = stored(shape)
+            elif self.instance is None:
+                raise serializers.ValidationError({"geometry": [_("A zone needs an area or a circle.")]})
+            else:
+                values.pop("circle", None)
+                values.pop("geometry", None)
+        except GeometryFault as fault:
+            raise geometry_problem(fault) from fault
+        return super().validate(values)
 
 
 class GeometryCheckSerializer(serializers.Serializer):

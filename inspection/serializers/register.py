@@ -1,10 +1,10 @@
-"""The register of assets: counts, and edits of many assets."""
+"""The registers of assets and zones: counts, and edits of many rows."""
 
 from typing import Any
 
 from django.utils.translation import gettext as _
 
-from inspection.serializers.edits import HIGHEST_VOLTAGE_V, MAX_VOLTAGES
+from inspection.serializers.edits import HIGHEST_VOLTAGE_V, MAX_VOLTAGES, ZoneFactsSerializer
 from workspace.api import strict_serializers as serializers
 from workspace.api.whole_numbers import MAX_NUMBER
 
@@ -83,8 +83,37 @@ class BulkEditSerializer(serializers.Serializer):
         return values
 
 
+class ZoneBulkValuesSerializer(ZoneFactsSerializer):
+    """Facts of zones that can be the same for many. A limit that is null is not stated, which differs from 0."""
+
+    def validate(self, values: dict[str, Any]) -> dict[str, Any]:
+        if not values:
+            raise serializers.ValidationError(_("Name at least one fact to change."))
+        return super().validate(values)
+
+
+class ZoneReadSerializer(serializers.Serializer):
+    id = serializers.IntegerField(min_value=1, max_value=MAX_NUMBER)
+    revision = serializers.IntegerField(min_value=1, max_value=MAX_NUMBER, help_text="with which it was read")
+
+
+class ZoneBulkEditSerializer(serializers.Serializer):
+    """Either `zones`, or the filters in the address with the number of zones that they find."""
+
+    zones = serializers.ListField(child=ZoneReadSerializer(), required=False, min_length=1, max_length=MAX_BULK)
+    expected = serializers.IntegerField(
+        required=False, min_value=1, max_value=MAX_BULK, help_text="of the filters: 409 if they find another number by now"
+    )
+    values = ZoneBulkValuesSerializer()
+
+    def validate(self, values: dict[str, Any]) -> dict[str, Any]:
+        if ("zones" in values) == ("expected" in values):
+            raise serializers.ValidationError(_("Say one of zones and expected."))
+        return values
+
+
 class BulkEditOutputSerializer(serializers.Serializer):
-    changed = serializers.IntegerField(help_text="assets that differ now")
+    changed = serializers.IntegerField(help_text="rows that differ now")
     entries = serializers.ListField(child=serializers.IntegerField(), help_text="of the history; with them the edit is undone")
 
 

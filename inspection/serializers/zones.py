@@ -150,12 +150,12 @@ class ZonePropertiesSerializer(serializers.Serializer):
     schedule_words = serializers.CharField(help_text="the same for people")
     is_active = serializers.BooleanField(help_text="it applies now, in UTC and without the margins of planning")
     changes_at = serializers.DateTimeField(allow_null=True, help_text="when it ends or begins to apply; null: not in the next 8 days")
+    revision = serializers.IntegerField(help_text="the ETag")
     updated_at = serializers.DateTimeField()
     source: Declared = SourceSerializer(allow_null=True)
 
 
 class ZoneDetailPropertiesSerializer(ZonePropertiesSerializer):
-    revision = serializers.IntegerField(help_text="the ETag")
     is_edited = serializers.BooleanField(help_text="changed by a curator")
     properties = serializers.DictField(help_text="everything else that the source says")
 
@@ -183,6 +183,7 @@ def zone_properties(zone: DrawnZone) -> dict[str, Any]:
         "schedule_words": schedule_words(zone.schedule),
         "is_active": activity.is_active,
         "changes_at": activity.changes_at,
+        "revision": zone.revision,
         "updated_at": zone.updated_at,
         "source": source_json(zone.zone_set.data_import if zone.zone_set else None),
     }
@@ -194,7 +195,7 @@ def zone_feature(zone: DrawnZone) -> dict[str, Any]:
 
 def zone_detail_feature(zone: DrawnZone) -> dict[str, Any]:
     feature = zone_feature(zone)
-    feature["properties"] |= {"properties": zone.properties, "revision": zone.revision, "is_edited": zone.is_edited}
+    feature["properties"] |= {"properties": zone.properties, "is_edited": zone.is_edited}
     return feature
 
 

@@ -1,7 +1,5 @@
 """The register of assets: counts, files, and edits of many at once."""
 
-from collections.abc import Iterator
-from itertools import islice
 from typing import Any
 
 from django.http import HttpResponseBase
@@ -10,11 +8,9 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.exporters.rows import Columns, ExportRow
 from inspection.models import Asset, AssetKind
-from inspection.selectors import references_of
-from inspection.selectors.register.assets import AssetFilter, asset_counts, assets_that_match, last_inspections
-from inspection.serializers.assets import FIELDS_OF_AN_ASSET, asset_properties
+from inspection.selectors.register.assets import AssetFilter, asset_counts, assets_that_match
+from inspection.serializers.export_rows import ASSET_COLUMNS, asset_rows
 from inspection.serializers.register import (
     MAX_BULK,
     AssetCountsSerializer,
@@ -24,26 +20,22 @@ from inspection.serializers.register import (
     BulkUndoSerializer,
 )
 from inspection.services.bulk_edits import change_assets, undo_changes
-from inspection.views.export_files import FILE_ANSWERS, FORMAT, check_number, file_response
+from inspection.views import export_files
+from inspection.views.export_files import FILE_ANSWERS, FORMAT, MAX_DIRECT, check_number, file_response, most_of
+from inspection.views.exports import EXPORT_JOB, JOB_ANSWERS, export_job
 from inspection.views.parameters import invalid
 from inspection.views.register_filters import ASSET_FILTERS, asset_filter
 from workspace.api.errors import ApiProblem
 from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer
 from workspace.api.signed_in import SignedInRequest
+from workspace.models import Role
 
-BATCH = 2_000
 KINDS_WITH = {
     "voltages_v": {AssetKind.TOWER, AssetKind.LINE},
     "circuits": {AssetKind.LINE},
     "height_m": {AssetKind.TOWER, AssetKind.BRIDGE},
 }
-LAYERS = {AssetKind.TOWER: "towers", AssetKind.LINE: "lines", AssetKind.RAILWAY: "railways", AssetKind.BRIDGE: "bridges"}
-COLUMNS: Columns = {
-    "kind": "TEXT", "subtype": "TEXT", "label": "TEXT", "name": "TEXT", "ref": "TEXT", "operator": "TEXT", "voltages_v": "TEXT",
-    "circuits": "INTEGER", "height_m": "REAL", "length_m": "REAL", "is_flyable": "BOOLEAN", "line_label": "TEXT", "osm": "TEXT",
-    "external_id": "TEXT", "inspected_at": "DATETIME", "inspected_share": "REAL",
-}  # fmt: skip
 
 
 class AssetCountsView(APIView):
@@ -65,6 +57,15 @@ class AssetCountsView(APIView):
         )
 
 
+def check_assets(wanted: AssetFilter, most: int) -> int:
+    return check_number(
+        assets_that_match(wanted),
+        most,
+        none=_("No asset matches: there is nothing to export."),
+        too_many=_("More than %(most)s assets match. Narrow the filters, such as by region."),
+    )
+
+
 class AssetExport(APIView):
     content_negotiation_class = OneAnswer
     throttle_scope = "exports"
@@ -72,35 +73,32 @@ class AssetExport(APIView):
     @extend_schema(
         operation_id="export_assets",
         summary="Assets that match filters, as CSV, GeoJSON or GeoPackage",
-        description="CSV has a position, the others the geometry. A GeoPackage has one layer for each kind.",
+        description="CSV has a position, the others the geometry. A GeoPackage has one layer for each kind, "
+        f"and at most {MAX_DIRECT:,} rows: `POST /api/v1/assets/exports` writes larger ones.",
         parameters=[FORMAT, *ASSET_FILTERS],
         responses=FILE_ANSWERS,
     )
     def get(self, request: SignedInRequest, ending: str) -> HttpResponseBase:
         wanted = asset_filter(request)
-        check_number(
-            assets_that_match(wanted),
-            none=_("No asset matches: there is nothing to export."),
-            too_many=_("More than %(most)s assets match. Narrow the filters, such as by region."),
-        )
-        return file_response(_rows(wanted), COLUMNS, ending, "assets")
+        check_assets(wanted, most_of(ending))
+        return file_response(asset_rows(wanted), ASSET_COLUMNS, ending, "assets")
 
 
-def _rows(wanted: AssetFilter) -> Iterator[ExportRow]:
-    """Yield the assets kind by kind."""
-    found = assets_that_match(wanted).only(*FIELDS_OF_AN_ASSET).order_by("kind", "pk").iterator(BATCH)
-    while batch := list(islice(found, BATCH)):
-        keys = [asset.pk for asset in batch]
-        references, inspected = references_of(wanted.organisation_id, keys), last_inspections(wanted.organisation_id, keys)
-        for asset in batch:
-            values = asset_properties(asset, references.get(asset.pk), inspected.get(asset.pk))
-            inspected_at = values["inspected_at"]
-            stated = {name: values[name] for name in COLUMNS} | {
-                "voltages_v": ";".join(map(str, values["voltages_v"])),
-                "inspected_at": inspected_at and inspected_at.isoformat().replace("+00:00", "Z"),
-            }
-            layer = LAYERS[AssetKind(asset.kind)]
-            yield ExportRow(layer, asset.pk, asset.geometry_json, asset.centre.x, asset.centre.y, stated)
+class AssetExportJobs(APIView):
+    write_roles = frozenset(Role)
+    throttle_scope = "exports"
+
+    @extend_schema(
+        operation_id="start_asset_export",
+        summary="Write a GeoPackage of the assets that match filters, in a job",
+        description=EXPORT_JOB,
+        parameters=ASSET_FILTERS,
+        request=None,
+        responses=JOB_ANSWERS,
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        wanted = asset_filter(request)
+        return export_job("assets", wanted, check_assets(wanted, export_files.MAX_EXPORTED), request.user)
 
 
 class AssetEdits(APIView):

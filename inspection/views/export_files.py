@@ -16,6 +16,7 @@ from inspection.exporters.rows import Columns, ExportRow, rows_as_csv, rows_as_g
 from workspace.api.errors import ApiProblem
 
 MAX_EXPORTED = 200_000  # as many as a file may bring in
+MAX_DIRECT = 10_000  # rows of a GeoPackage that is written while the request waits, some 2 s
 MEDIA_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json", "gpkg": "application/geopackage+sqlite3"}
 FORMAT = OpenApiParameter("ending", str, OpenApiParameter.PATH, enum=[*MEDIA_TYPES], description="how the file ends")
 FILE_ANSWERS: dict[Any, Any] = {
@@ -24,13 +25,19 @@ FILE_ANSWERS: dict[Any, Any] = {
 }
 
 
-def check_number(found: QuerySet[Any], *, none: str, too_many: str) -> None:
-    """Raise ApiProblem 409 with one of the texts unless 1 to MAX_EXPORTED rows are found; too_many names this number as %(most)s."""
-    count = found.order_by()[: MAX_EXPORTED + 1].count()
+def most_of(ending: str) -> int:
+    """Return how many rows a file has at most that is not written by a job: text is sent while it is made."""
+    return min(MAX_DIRECT, MAX_EXPORTED) if ending == "gpkg" else MAX_EXPORTED
+
+
+def check_number(found: QuerySet[Any], most: int, *, none: str, too_many: str) -> int:
+    """Return the number of rows. Raises ApiProblem 409 with one of the texts unless it is 1 to `most`; too_many names this as %(most)s."""
+    count = found.order_by()[: most + 1].count()
     if count == 0:
         raise ApiProblem(409, "nothing_found", none)
-    if count > MAX_EXPORTED:
-        raise ApiProblem(409, "too_many", too_many % {"most": f"{MAX_EXPORTED:,}"})
+    if count > most:
+        raise ApiProblem(409, "too_many", too_many % {"most": f"{most:,}"})
+    return count
 
 
 def file_response(rows: Iterator[ExportRow], columns: Columns, ending: str, stem: str) -> HttpResponseBase:

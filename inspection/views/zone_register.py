@@ -1,31 +1,36 @@
-"""The register of zones: counts and files."""
+"""The register of zones: counts, files, and edits of many at once."""
 
-from collections.abc import Iterator
 from typing import Any
 
-import shapely
 from django.http import HttpResponseBase
 from django.utils.translation import gettext as _
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.exporters.rows import Columns, ExportRow
 from inspection.models import ZoneSet
 from inspection.selectors.register.zones import ZoneFilter, zone_counts, zones_that_match
-from inspection.serializers.register import ZoneCountsSerializer
-from inspection.serializers.zones import zone_properties
-from inspection.views.export_files import FILE_ANSWERS, FORMAT, check_number, file_response
+from inspection.serializers.export_rows import ZONE_COLUMNS, zone_rows
+from inspection.serializers.register import (
+    BulkEditOutputSerializer,
+    BulkUndoOutputSerializer,
+    BulkUndoSerializer,
+    ZoneBulkEditSerializer,
+    ZoneCountsSerializer,
+)
+from inspection.services.bulk_edits import LimitsCrossed, RowsChanged, change_zones, undo_zone_changes
+from inspection.views import export_files
+from inspection.views.export_files import FILE_ANSWERS, FORMAT, MAX_DIRECT, check_number, file_response, most_of
+from inspection.views.exports import EXPORT_JOB, JOB_ANSWERS, export_job
 from inspection.views.register_filters import ZONE_FILTERS, zone_filter
+from workspace.api.errors import ApiProblem
+from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer
+from workspace.api.signed_in import SignedInRequest
+from workspace.models import Role
 
-COLUMNS: Columns = {
-    "name": "TEXT", "identifier": "TEXT", "layer": "INTEGER", "zone_set": "TEXT", "restriction": "TEXT", "reason": "TEXT",
-    "lower_limit_m": "REAL", "lower_reference": "TEXT", "upper_limit_m": "REAL", "upper_reference": "TEXT", "schedule": "TEXT",
-    "is_active": "BOOLEAN",
-}  # fmt: skip
-BATCH = 500
+NAMED = 3  # zones of a refused edit
 
 
 class ZoneCountsView(APIView):
@@ -53,6 +58,15 @@ def _sorted(counts: dict[str, int]) -> list[dict[str, Any]]:
     return [{"value": value, "count": count} for value, count in sorted(counts.items(), key=lambda entry: (-entry[1], entry[0]))]
 
 
+def check_zones(wanted: ZoneFilter, most: int) -> int:
+    return check_number(
+        zones_that_match(wanted),
+        most,
+        none=_("No zone matches: there is nothing to export."),
+        too_many=_("More than %(most)s zones match. Narrow the filters, such as by set."),
+    )
+
+
 class ZoneExport(APIView):
     content_negotiation_class = OneAnswer
     throttle_scope = "exports"
@@ -60,28 +74,89 @@ class ZoneExport(APIView):
     @extend_schema(
         operation_id="export_zones",
         summary="Zones that match filters, as CSV, GeoJSON or GeoPackage",
-        description="CSV has a position, the others the geometry. Limits are in metres; empty ones are not stated.",
+        description="CSV has a position, the others the geometry. Limits are in metres; empty ones are not stated. "
+        f"A GeoPackage has at most {MAX_DIRECT:,} rows: `POST /api/v1/zones/exports` writes larger ones.",
         parameters=[FORMAT, *ZONE_FILTERS],
         responses=FILE_ANSWERS,
     )
     def get(self, request: Request, ending: str) -> HttpResponseBase:
         wanted = zone_filter(request)
-        check_number(
-            zones_that_match(wanted),
-            none=_("No zone matches: there is nothing to export."),
-            too_many=_("More than %(most)s zones match. Narrow the filters, such as by set."),
-        )
-        return file_response(_rows(wanted), COLUMNS, ending, "zones")
+        check_zones(wanted, most_of(ending))
+        return file_response(zone_rows(wanted), ZONE_COLUMNS, ending, "zones")
 
 
-def _rows(wanted: ZoneFilter) -> Iterator[ExportRow]:
-    for zone in zones_that_match(wanted).order_by("pk").iterator(BATCH):
-        values = zone_properties(zone)
-        limits = {
-            f"{side}_{name}": (values[f"{side}_limit"] or {}).get(key)
-            for side in ("lower", "upper")
-            for name, key in (("limit_m", "value_m"), ("reference", "reference"))
-        }
-        stated = {name: values[name] for name in COLUMNS if name in values} | limits | {"schedule": values["schedule_words"]}
-        middle = shapely.from_geojson(zone.geometry_json).representative_point()
-        yield ExportRow("zones", zone.pk, zone.geometry_json, middle.x, middle.y, stated)
+class ZoneExportJobs(APIView):
+    write_roles = frozenset(Role)
+    throttle_scope = "exports"
+
+    @extend_schema(
+        operation_id="start_zone_export",
+        summary="Write a GeoPackage of the zones that match filters, in a job",
+        description=EXPORT_JOB,
+        parameters=ZONE_FILTERS,
+        request=None,
+        responses=JOB_ANSWERS,
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        wanted = zone_filter(request)
+        return export_job("zones", wanted, check_zones(wanted, export_files.MAX_EXPORTED), request.user)
+
+
+class ZoneEdits(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="change_zones",
+        summary="Correct facts of many zones at once",
+        description="All or none. Each zone has its entry in the history, and imports leave it alone as after a correction by itself.",
+        parameters=ZONE_FILTERS,
+        request=ZoneBulkEditSerializer,
+        responses={
+            200: BulkEditOutputSerializer,
+            409: OpenApiResponse(description="Some zones have another revision (`details.changed`), or the filters find another number."),
+        },
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = ZoneBulkEditSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        asked = body.validated_data
+        try:
+            entries = change_zones(
+                values=asked["values"],
+                actor=request.user,
+                revisions={zone["id"]: zone["revision"] for zone in asked["zones"]} if "zones" in asked else None,
+                found=None if "zones" in asked else zones_that_match(zone_filter(request)),
+                expected=asked.get("expected", 0),
+            )
+        except RowsChanged as error:
+            raise _conflict(error) from error
+        except LimitsCrossed as error:
+            names = ", ".join(zone.name for zone in list(error.zones)[:NAMED])
+            message = _("The upper limit would lie below the lower one, such as of %(names)s. Nothing was changed.") % {"names": names}
+            raise ApiProblem(400, "invalid", message, details={"values": [message]}) from error
+        return Response({"changed": len(entries), "entries": entries})
+
+
+def _conflict(error: RowsChanged) -> ApiProblem:
+    if error.is_of_filters:
+        message = _("The filters find another number of zones by now. Nothing was changed.")
+        return ApiProblem(409, "changed", message, details={"found": len(error.keys)})
+    message = _("Others have changed or deleted some of these zones in the meantime. Nothing was changed.")
+    return ApiProblem(409, "changed", message, details={"changed": error.keys})
+
+
+class ZoneEditsUndo(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="undo_zone_changes",
+        summary="Take a correction of many zones back",
+        description="Zones that were edited or imported again since stay as they are.",
+        request=BulkUndoSerializer,
+        responses=BulkUndoOutputSerializer,
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = BulkUndoSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        found = undo_zone_changes(entries=set(body.validated_data["entries"]), actor=request.user)
+        return Response({"undone": found.undone, "kept": found.kept})

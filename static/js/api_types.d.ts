@@ -875,7 +875,7 @@ export interface components {
             results: components["schemas"]["BrowserSession"][];
         };
         BulkEditOutput: {
-            /** @description assets that differ now */
+            /** @description rows that differ now */
             changed: number;
             /** @description of the history; with them the edit is undone */
             entries: number[];
@@ -5243,17 +5243,17 @@ export interface components {
         };
         /** @description A zone that a user draws or corrects. A limit that is null is not stated, which differs from 0. */
         PatchedZoneInputRequest: {
-            name?: string;
-            /** @description GeoJSON Polygon or MultiPolygon */
-            geometry?: unknown;
-            /** @description instead of geometry: centre [lon, lat] and radius_m */
-            circle?: unknown;
             restriction?: string;
             reason?: string;
             lower_limit?: components["schemas"]["LimitInputRequest"] | null;
             upper_limit?: components["schemas"]["LimitInputRequest"] | null;
             /** @description periods as ED-318's limitedApplicability; null = always */
             schedule?: unknown;
+            name?: string;
+            /** @description GeoJSON Polygon or MultiPolygon */
+            geometry?: unknown;
+            /** @description instead of geometry: centre [lon, lat] and radius_m */
+            circle?: unknown;
         };
         /** @description An asset as a list of targets shows it; for its shape see GET /assets/{id}. */
         PickedAsset: {
@@ -9595,6 +9595,22 @@ export interface components {
             /** @description that was flown to */
             waypoint: number | null;
         };
+        /** @description Either `zones`, or the filters in the address with the number of zones that they find. */
+        ZoneBulkEditRequest: {
+            zones?: components["schemas"]["ZoneReadRequest"][];
+            /** @description of the filters: 409 if they find another number by now */
+            expected?: number;
+            values: components["schemas"]["ZoneBulkValuesRequest"];
+        };
+        /** @description Facts of zones that can be the same for many. A limit that is null is not stated, which differs from 0. */
+        ZoneBulkValuesRequest: {
+            restriction?: string;
+            reason?: string;
+            lower_limit?: components["schemas"]["LimitInputRequest"] | null;
+            upper_limit?: components["schemas"]["LimitInputRequest"] | null;
+            /** @description periods as ED-318's limitedApplicability; null = always */
+            schedule?: unknown;
+        };
         ZoneCollection: {
             type: components["schemas"]["FeatureCollectionType"];
             features: components["schemas"]["ZoneFeature"][];
@@ -9642,11 +9658,11 @@ export interface components {
              * @description when it ends or begins to apply; null: not in the next 8 days
              */
             changes_at: string | null;
+            /** @description the ETag */
+            revision: number;
             /** Format: date-time */
             updated_at: string;
             source: components["schemas"]["Source"] | null;
-            /** @description the ETag */
-            revision: number;
             /** @description changed by a curator */
             is_edited: boolean;
             /** @description everything else that the source says */
@@ -9672,17 +9688,17 @@ export interface components {
         };
         /** @description A zone that a user draws or corrects. A limit that is null is not stated, which differs from 0. */
         ZoneInputRequest: {
-            name: string;
-            /** @description GeoJSON Polygon or MultiPolygon */
-            geometry?: unknown;
-            /** @description instead of geometry: centre [lon, lat] and radius_m */
-            circle?: unknown;
             restriction?: string;
             reason?: string;
             lower_limit?: components["schemas"]["LimitInputRequest"] | null;
             upper_limit?: components["schemas"]["LimitInputRequest"] | null;
             /** @description periods as ED-318's limitedApplicability; null = always */
             schedule?: unknown;
+            name: string;
+            /** @description GeoJSON Polygon or MultiPolygon */
+            geometry?: unknown;
+            /** @description instead of geometry: centre [lon, lat] and radius_m */
+            circle?: unknown;
         };
         /** @description Margins that plans keep from zones. */
         ZoneMargins: {
@@ -9734,9 +9750,16 @@ export interface components {
              * @description when it ends or begins to apply; null: not in the next 8 days
              */
             changes_at: string | null;
+            /** @description the ETag */
+            revision: number;
             /** Format: date-time */
             updated_at: string;
             source: components["schemas"]["Source"] | null;
+        };
+        ZoneReadRequest: {
+            id: number;
+            /** @description with which it was read */
+            revision: number;
         };
         ZoneSet: {
             id: number;
@@ -10493,6 +10516,8 @@ export type WithinOutput = components['schemas']['WithinOutput'];
 export type YawFrameEnum = components['schemas']['YawFrameEnum'];
 export type ZoneAlong = components['schemas']['ZoneAlong'];
 export type ZoneApproach = components['schemas']['ZoneApproach'];
+export type ZoneBulkEditRequest = components['schemas']['ZoneBulkEditRequest'];
+export type ZoneBulkValuesRequest = components['schemas']['ZoneBulkValuesRequest'];
 export type ZoneCollection = components['schemas']['ZoneCollection'];
 export type ZoneCounts = components['schemas']['ZoneCounts'];
 export type ZoneDetailFeature = components['schemas']['ZoneDetailFeature'];
@@ -10503,6 +10528,7 @@ export type ZoneInputRequest = components['schemas']['ZoneInputRequest'];
 export type ZoneMargins = components['schemas']['ZoneMargins'];
 export type ZoneName = components['schemas']['ZoneName'];
 export type ZoneProperties = components['schemas']['ZoneProperties'];
+export type ZoneReadRequest = components['schemas']['ZoneReadRequest'];
 export type ZoneSet = components['schemas']['ZoneSet'];
 export type ZoneSetCount = components['schemas']['ZoneSetCount'];
 export type ZoneSetPage = components['schemas']['ZoneSetPage'];

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path, PurePosixPath
+from uuid import UUID, uuid4
 
 from django.conf import settings
 from django.db import transaction
@@ -103,10 +104,10 @@ def receive_part(*, upload: Upload, first_byte: int, content: bytes) -> Upload:
     return held
 
 
-def store_upload(*, file_name: str, chunks: Iterable[bytes], created_by: User | None) -> Upload:
+def store_upload(*, file_name: str, chunks: Iterable[bytes], created_by: User | None, key: UUID | None = None) -> Upload:
     """Return an upload of what the program itself has fetched or made."""
     with transaction.atomic():
-        upload = Upload.objects.create(file_name=plain_name(file_name), size_bytes=0, created_by=created_by)
+        upload = Upload.objects.create(id=key or uuid4(), file_name=plain_name(file_name), size_bytes=0, created_by=created_by)
         digest = hashlib.sha256()
         size = 0
         for part in _parts(chunks):

@@ -1,172 +1,72 @@
-/** The dialog that corrects one fact of many assets, and the way back. */
+/** Facts of assets that can be corrected for many at once. */
 
-import { ApiError, post } from "../api.js";
-import { h, setChildren } from "../dom.js";
-import { toast } from "../page/toast.js";
+import { h } from "../dom.js";
 import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
 import { MAX_KV, voltsOf } from "./voltages.js";
 
-/** @import { Answer } from "../api.js" */
-/** @import { BulkEditOutput, BulkUndoOutput } from "../api_types.d.ts" */
-/** @import { Marked } from "../register/types.d.ts" */
+/** @import { AssetFeature } from "../api_types.d.ts" */
+/** @import { BulkEdit, BulkFact } from "../register/types.d.ts" */
 
-const MAX_BULK = 5_000;
-/** @type {Record<string, string>} */
-const FACTS = {
-  operator: t("Operator"),
-  voltages_v: t("Voltages"),
-  circuits: t("Circuits"),
-  height_m: t("Height above ground"),
-  is_flyable: t("Used for routing"),
+/** @param {HTMLElement} control @param {string} [unit] */
+function newValue(control, unit) {
+  control.id = "bulk-value";
+  const words = unit ? `${t("New value")} [${unit}]` : t("New value");
+  return h("div", { class: "field" }, h("label", { for: control.id }, words), control);
+}
+
+/** @param {{ min: number, max: number, step: number | "any" }} limits @param {string} [unit] @returns {BulkFact["field"]} */
+const numberField = (limits, unit) => () => {
+  const number = h("input", { class: "input", type: "number", ...limits });
+  const read = () => (number.validity.valid ? (number.value === "" ? null : number.valueAsNumber) : undefined);
+  return { element: newValue(number, unit), read };
 };
 
-/**
- * @typedef {object} Fact
- * @property {HTMLElement} control
- * @property {string} [unit]
- * @property {() => unknown} read undefined where what is written is no value
- */
+/** @param {(text: string) => unknown} read @param {string} [unit] @param {string} [placeholder] @returns {BulkFact["field"]} */
+const textField = (read, unit, placeholder) => () => {
+  const text = h("input", { class: "input", type: "text", maxlength: 255, placeholder });
+  return { element: newValue(text, unit), read: () => read(text.value.trim()) };
+};
 
-/** @param {string} name @returns {Fact} */
-function factControl(name) {
-  if (name === "is_flyable") {
-    const select = h(
-      "select",
-      { class: "input" },
-      h("option", { value: "true" }, t("yes")),
-      h("option", { value: "false" }, t("no")),
-    );
-    return { control: select, read: () => select.value === "true" };
-  }
-  if (name === "circuits" || name === "height_m") {
-    const isHeight = name === "height_m";
-    const number = h("input", {
-      class: "input",
-      type: "number",
-      min: isHeight ? 0.1 : 1,
-      max: isHeight ? 1000 : 100,
-      step: isHeight ? "any" : 1,
-    });
-    const read = () => (number.validity.valid ? (number.value === "" ? null : number.valueAsNumber) : undefined);
-    return { control: number, unit: isHeight ? "m" : "", read };
-  }
-  const text = h("input", { class: "input", type: "text", maxlength: 255 });
-  if (name === "operator") return { control: text, read: () => text.value.trim() };
-  text.placeholder = "110, 20";
-  return { control: text, unit: "kV", read: () => voltsOf(text.value) ?? undefined };
+function yesOrNo() {
+  const choices = [
+    ["true", t("yes")],
+    ["false", t("no")],
+  ];
+  const select = h(
+    "select",
+    { class: "input" },
+    choices.map(([value, words]) => h("option", { value }, words)),
+  );
+  return { element: newValue(select), read: () => select.value === "true" };
 }
 
-/**
- * Ask which fact gets which value, and change it. Resolves to whether assets changed.
- *
- * @param {Marked} marked
- * @param {() => unknown} reload after an undo
- * @returns {Promise<boolean>}
- */
-export async function editMarked(marked, reload) {
-  if (marked.count > MAX_BULK) {
-    toast(t("At most {most} assets at once: narrow the filters.", { most: numberText(MAX_BULK) }));
-    return false;
-  }
-  const values = await askFact(marked.count);
-  if (!values) return false;
-  const query = marked.ids ? "" : `?${new URLSearchParams(marked.query)}`;
-  const body = marked.ids ? { ids: marked.ids, values } : { expected: marked.count, values };
-  try {
-    const { data } = /** @type {Answer<BulkEditOutput>} */ (await post(`/assets/edits${query}`, body));
-    const words = tn(data.changed, "{count} asset changed.", "{count} assets changed.", {
-      count: numberText(data.changed),
-    });
-    toast(words, data.changed ? { label: t("Undo"), act: () => undo(data.entries, reload) } : null);
-    return data.changed > 0;
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    toast(error.message);
-    return false;
-  }
-}
+/** @type {Record<string, BulkFact>} */
+const FACTS = {
+  operator: { words: t("Operator"), field: textField((text) => text) },
+  voltages_v: {
+    words: t("Voltages"),
+    field: textField((text) => voltsOf(text) ?? undefined, "kV", "110, 20"),
+    fault: t("Write kilovolts up to {most}, such as 110, 20.", { most: MAX_KV }),
+  },
+  circuits: { words: t("Circuits"), field: numberField({ min: 1, max: 100, step: 1 }) },
+  height_m: { words: t("Height above ground"), field: numberField({ min: 0.1, max: 1000, step: "any" }, "m") },
+  is_flyable: { words: t("Used for routing"), field: yesOrNo },
+};
 
-/** @param {number[]} entries @param {() => unknown} reload */
-async function undo(entries, reload) {
-  try {
-    const { data } = /** @type {Answer<BulkUndoOutput>} */ (await post("/assets/edits/undo", { entries }));
-    const kept = data.kept
-      ? ` ${tn(data.kept, "{count} was changed since and stays.", "{count} were changed since and stay.")}`
-      : "";
-    toast(
-      tn(data.undone, "{count} asset is as before.", "{count} assets are as before.", {
-        count: numberText(data.undone),
-      }) + kept,
-    );
-    await reload();
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    toast(error.message);
-  }
-}
-
-/** @param {number} count @returns {Promise<Record<string, unknown> | null>} */
-function askFact(count) {
-  return new Promise((resolve) => {
-    /** @type {Fact} */
-    let fact;
-    const choice = h(
-      "select",
-      { class: "input", id: "bulk-fact" },
-      Object.entries(FACTS).map(([value, words]) => h("option", { value }, words)),
-    );
-    const place = h("div", { class: "field" });
-    const fault = h("p", { class: "caption", role: "alert" });
-    const act = tn(count, "Change {count} asset", "Change {count} assets", { count: numberText(count) });
-    const draw = () => {
-      fact = factControl(choice.value);
-      fact.control.id = "bulk-value";
-      fault.textContent = "";
-      setChildren(
-        place,
-        h("label", { for: "bulk-value" }, fact.unit ? `${t("New value")} [${fact.unit}]` : t("New value")),
-        fact.control,
-      );
-    };
-    choice.addEventListener("change", draw);
-    draw();
-    const form = h(
-      "form",
-      { method: "dialog" },
-      h("div", { class: "field" }, h("label", { for: "bulk-fact" }, t("Fact to change")), choice),
-      place,
-      h(
-        "p",
-        { class: "caption" },
-        t("A blank value means not stated. Later imports leave these assets alone, and each keeps its history."),
-      ),
-      fault,
-      h(
-        "div",
-        { class: "acts" },
-        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
-        h("button", { type: "submit", class: "button primary" }, act),
-      ),
-    );
-    form.addEventListener("submit", (event) => {
-      const value = fact.read();
-      if (value !== undefined) return dialog.close("go");
-      event.preventDefault();
-      fault.textContent =
-        choice.value === "voltages_v"
-          ? t("Write kilovolts up to {most}, such as 110, 20.", { most: MAX_KV })
-          : t("This is no value of this fact.");
-      fact.control.focus();
-    });
-    /** @type {HTMLDialogElement} */
-    const dialog = h("dialog", { "aria-labelledby": "bulk-title" }, h("h2", { id: "bulk-title" }, act), form);
-    dialog.addEventListener("close", () => {
-      resolve(dialog.returnValue === "go" ? { [choice.value]: fact.read() } : null);
-      dialog.remove();
-    });
-    document.body.append(dialog);
-    dialog.showModal();
-    choice.focus();
-  });
-}
+/** @param {() => unknown} reload @returns {BulkEdit<AssetFeature>} */
+export const assetEdit = (reload) => ({
+  path: "/assets/edits",
+  facts: FACTS,
+  chosen: (rows) => ({ ids: rows.map(({ id }) => id) }),
+  note: t("A blank value means not stated. Later imports leave these assets alone, and each keeps its history."),
+  words: {
+    change: (count) => tn(count, "Change {count} asset", "Change {count} assets", { count: numberText(count) }),
+    changed: (count) => tn(count, "{count} asset changed.", "{count} assets changed.", { count: numberText(count) }),
+    undone: (count) =>
+      tn(count, "{count} asset is as before.", "{count} assets are as before.", { count: numberText(count) }),
+    kept: (count) => tn(count, "{count} was changed since and stays.", "{count} were changed since and stay."),
+    tooMany: (most) => t("At most {most} assets at once: narrow the filters.", { most }),
+  },
+  reload,
+});

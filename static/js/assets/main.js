@@ -5,10 +5,20 @@ import { mountRecordPage } from "../ground/record_page.js";
 import { countsText } from "../map/look/region_words.js";
 import { loadMapLibrary } from "../map/maplibre.js";
 import { readPage } from "../page/chrome.js";
+import { editMarked } from "../register/bulk_edit.js";
 import { t, tn } from "../text.js";
-import { coordinateText, dateText, exactHeightText, lengthText, percentText, voltageText, whenText } from "../units.js";
+import {
+  coordinateText,
+  dateText,
+  exactHeightText,
+  lengthText,
+  numberText,
+  percentText,
+  voltageText,
+  whenText,
+} from "../units.js";
 import { closeViewPlan, viewPlanPart } from "../view_plan/panel.js";
-import { editMarked } from "./bulk_edit.js";
+import { assetEdit } from "./bulk_edit.js";
 import { mountFilters } from "./filters.js";
 import { assetForm } from "./form.js";
 import { inspectionsPart, planButton, planInspection, resultsPart } from "./inspections.js";
@@ -217,7 +227,12 @@ const REGISTER = {
     filters.counted(counts);
     byId("asset-counts").textContent = countsText(counts.kinds);
   },
-  edit: (marked) => editMarked(marked, () => records.reload()),
+  editWords: (count) => tn(count, "Edit {count} asset", "Edit {count} assets", { count: numberText(count) }),
+  edit: (marked) =>
+    editMarked(
+      marked,
+      assetEdit(() => records.reload()),
+    ),
 };
 
 /** @type {RecordKind<AssetDetailFeature & RecordFeature, AssetFeature>} */

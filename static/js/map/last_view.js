@@ -8,7 +8,8 @@ import { copiedAt } from "../offline_copy.js";
 const STORE_AFTER_MS = 1_500;
 
 /**
- * Store the view after the user has moved the map; moves of the page itself, before any act of the user, do not count.
+ * Store the view after the user has moved the map. Moves of the page itself do not count: those that say so (`isOfPage`), and any before the
+ * first act of the user.
  *
  * @param {MapLibreMap} map
  */
@@ -27,6 +28,7 @@ export function storeLastView(map) {
     put("/account/map-view", JSON.parse(view), { keepalive: true }).catch(() => {});
   }
   map.on("moveend", (event) => {
+    if ("isOfPage" in event && event.isOfPage) return;
     const isOfUser = "originalEvent" in event && event.originalEvent;
     if (!isOfUser && !navigator.userActivation?.hasBeenActive) return;
     clearTimeout(timer); // the map may follow a UAV: only where it comes to rest counts

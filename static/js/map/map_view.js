@@ -116,7 +116,7 @@ export function createMap(container, opening) {
       keepsAddress = true; // from here on the user may return to the view
       if (!box) return;
       const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-      fitTo(box, animate && !calm ? 350 : 0);
+      fitTo(box, animate && !calm ? 350 : 0, !animate);
     },
   };
 }
@@ -127,7 +127,7 @@ export function createMap(container, opening) {
  *
  * @param {MapLibreMap} map
  * @param {HTMLElement} container
- * @returns {(box: Box, duration_ms: number) => void}
+ * @returns {(box: Box, duration_ms: number, isOfPage?: boolean) => void} isOfPage: no act of the user, as its event tells
  */
 function keepFitted(map, container) {
   /** @type {Box | null} */
@@ -140,14 +140,14 @@ function keepFitted(map, container) {
     if (!isFitting && !isResized) fitted = null;
   });
 
-  /** @param {Box} box @param {number} duration_ms */
-  function fitTo(box, duration_ms) {
+  /** @param {Box} box @param {number} duration_ms @param {boolean} [isOfPage] */
+  function fitTo(box, duration_ms, isOfPage = false) {
     const [west, south, east, north] = box;
     fitted = box;
     isFitting = true;
     footOfFit = footOf(container);
     const how = { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration: duration_ms };
-    map.fitBounds([west, south, east, north], how);
+    map.fitBounds([west, south, east, north], how, { isOfPage });
     isFitting = false;
   }
 
@@ -158,7 +158,7 @@ function keepFitted(map, container) {
     if (fitted && (size !== sizeOf(container) || footOf(container) > footOfFit)) {
       const box = fitted; // a resize counts as a move
       map.resize();
-      fitTo(box, 0);
+      fitTo(box, 0, true);
     }
     size = sizeOf(container);
   }

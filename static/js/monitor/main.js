@@ -2,6 +2,7 @@
 
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
+import { inAir } from "../domain/in_air.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
@@ -283,7 +284,7 @@ async function load() {
   store.listen(["details", "uavs"], ({ details, uavs, missions }) => {
     if (wasFitted || !uavs.length || missions.some(({ id }) => !details.has(id))) return;
     wasFitted = true;
-    there.fit({ animate: false });
+    if (!there.opensAtLastView || uavs.some(inAir)) there.fit({ animate: false });
   });
 }
 

@@ -4,6 +4,7 @@ import { byId, h, icon, setChildren } from "../dom.js";
 import { closeMenu, menuOf, toggleMenu } from "../page/chrome.js";
 import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
+import { exportInJob } from "./export_job.js";
 
 /** @import { Geometry } from "../map/types.d.ts" */
 /** @import { Marked, Register, RegisterColumn } from "./types.d.ts" */
@@ -14,6 +15,7 @@ const FILES = [
   ["gpkg", "GeoPackage"],
 ];
 const MAX_EXPORTED = 200_000;
+const MAX_DIRECT = 10_000; // rows of a GeoPackage that is written without a job
 const MAX_RINGS = 500; // of marked rows
 const NEAR_END_PX = 400;
 
@@ -25,7 +27,7 @@ const NEAR_END_PX = 400;
  * @property {() => unknown} more the next page
  * @property {() => unknown} reload after another order
  * @property {() => [string, string][]} narrowed what narrows the register, as parameters of its address
- * @property {(marked: Marked) => unknown} edit
+ * @property {(marked: Marked<Row>) => unknown} edit
  */
 
 /** @template {{ id: number, geometry: any }} Row */
@@ -37,6 +39,7 @@ export class RegisterTable {
   #body = h("tbody");
   #count = h("span", { class: "register-count", role: "status" });
   #acts = h("span", { class: "register-acts" });
+  #file = h("span", { class: "register-acts" });
   #scroll;
   /** @type {Set<string>} */
   #hidden;
@@ -98,7 +101,7 @@ export class RegisterTable {
         { class: "register-bar" },
         this.#count,
         this.#acts,
-        h("span", { class: "register-tools" }, columns, files),
+        h("span", { class: "register-tools" }, this.#file, columns, files),
       ),
       this.#scroll,
     );
@@ -186,18 +189,18 @@ export class RegisterTable {
           "button",
           { type: "button", class: "text-button", onclick: () => this.#on.edit(this.#markedRows()) },
           icon("pencil", "small"),
-          tn(count, "Edit {count} asset", "Edit {count} assets", { count: numberText(count) }),
+          this.#register.editWords(count),
         ),
         h("button", { type: "button", class: "text-button", onclick: () => this.#clear() }, t("Unmark")),
       ],
     );
   }
 
-  /** @returns {Marked} */
+  /** @returns {Marked<Row>} */
   #markedRows() {
     return this.#isAll
-      ? { count: this.#total, ids: null, query: this.#on.narrowed() }
-      : { count: this.#marked.size, ids: [...this.#marked.keys()], query: [] };
+      ? { count: this.#total, rows: null, query: this.#on.narrowed() }
+      : { count: this.#marked.size, rows: [...this.#marked.values()], query: [] };
   }
 
   #unmark() {
@@ -362,7 +365,9 @@ export class RegisterTable {
       reason,
       act: () => {
         closeMenu();
-        h("a", { href: `/api/v1${this.#register.exports}.${ending}?${query}`, download: "" }).click();
+        const { exports } = this.#register;
+        if (ending === "gpkg" && this.#total > MAX_DIRECT) exportInJob(this.#file, `${exports}s?${query}`);
+        else h("a", { href: `/api/v1${exports}.${ending}?${query}`, download: "" }).click();
       },
     }));
     return menuOf(t("Export what is filtered"), items);

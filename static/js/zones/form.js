@@ -111,21 +111,21 @@ export function restrictionHint(value) {
     : t("Plans keep clear of it.");
 }
 
-/** @param {string} value */
-function restrictionField(value) {
+/** @param {string} value @param {string} [id] */
+export function restrictionField(value, id = "zone-restriction") {
   const { chosen, values } = restrictionChoices(value);
   const input = h(
     "select",
-    { class: "input", id: "zone-restriction", "aria-describedby": "zone-restriction-hint" },
+    { class: "input", id, "aria-describedby": `${id}-hint` },
     ["", ...values].map((code) =>
       h("option", { value: code, selected: code === chosen }, code ? plainWords(code) : t("not stated")),
     ),
   );
-  const hint = h("p", { class: "caption", id: "zone-restriction-hint" }, restrictionHint(chosen));
+  const hint = h("p", { class: "caption", id: `${id}-hint` }, restrictionHint(chosen));
   input.addEventListener("input", () => {
     hint.textContent = restrictionHint(input.value);
   });
-  const element = h("div", {}, field("zone-restriction", t("Restriction"), input), hint);
+  const element = h("div", {}, field(id, t("Restriction"), input), hint);
   return { element, read: () => (input.value === chosen ? value : input.value) };
 }
 
@@ -137,7 +137,7 @@ export function reasonsOf(text) {
 }
 
 /** @param {string} text */
-function reasonField(text) {
+export function reasonField(text) {
   const { codes, other } = reasonsOf(text);
   const boxes = REASONS.map((code) => ({
     code,

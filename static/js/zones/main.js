@@ -6,8 +6,20 @@ import { bandDrawing, heightsText, limitText } from "../domain/zone_heights.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { loadMapLibrary } from "../map/maplibre.js";
 import { plainWords } from "../map/tips.js";
-import { t } from "../text.js";
-import { clockText, coordinateText, dayText, lengthText, minutesAheadOfUtc, whenText, zoneText } from "../units.js";
+import { readPage } from "../page/chrome.js";
+import { editMarked } from "../register/bulk_edit.js";
+import { t, tn } from "../text.js";
+import {
+  clockText,
+  coordinateText,
+  dayText,
+  lengthText,
+  minutesAheadOfUtc,
+  numberText,
+  whenText,
+  zoneText,
+} from "../units.js";
+import { zoneEdit } from "./bulk_edit.js";
 import { mountZoneFilters } from "./filters.js";
 import { restrictionHint, zoneForm } from "./form.js";
 import { mountImportButton } from "./import_button.js";
@@ -127,7 +139,7 @@ const REGISTER = {
   order: "name",
   exports: "/zones/export",
   summary: "/zones/summary",
-  canEdit: false,
+  canEdit: readPage().canCurate,
   name: ({ properties }) => properties.name,
   icon: () => "zone",
   columns: [
@@ -171,7 +183,12 @@ const REGISTER = {
   ],
   /** @param {ZoneCounts} counts */
   counted: (counts) => filters.counted(counts),
-  edit: async () => false,
+  editWords: (count) => tn(count, "Edit {count} zone", "Edit {count} zones", { count: numberText(count) }),
+  edit: (marked) =>
+    editMarked(
+      marked,
+      zoneEdit(() => records.reload()),
+    ),
 };
 
 /** @type {RecordKind<ZoneDetailFeature & RecordFeature, ZoneFeature>} */

@@ -127,13 +127,44 @@ def test_zones_are_a_register_too(visitor: Visitor, picture: Picture) -> None:
     assert loaded.value.suggested_filename == "zones.csv"
 
 
-def a_user_writes(page: Page, asset: str, **facts: object) -> None:
-    """Another change of the asset, past this page."""
+@pytest.mark.long
+def test_several_zones_are_corrected_together_unless_one_changed_meanwhile(visitor: Visitor, picture: Picture) -> None:
+    page = opens(visitor, "/zones")
+    rows = page.locator("tr.record-row")
+    name = rows.first.get_by_role("link").inner_text()
+    reasons = [row.get_by_role("cell").nth(3).inner_text() for row in (rows.nth(0), rows.nth(1))]
+    zone = str(rows.first.get_attribute("data-id"))
+
+    def corrects(meanwhile: Callable[[], None]) -> None:
+        for row in (0, 1):
+            rows.nth(row).get_by_role("checkbox").check()
+        page.get_by_role("button", name="Edit 2 zones").click()
+        dialog = page.get_by_role("dialog")
+        dialog.get_by_label("Fact to change").select_option("reason")
+        dialog.get_by_label("Noise", exact=True).check()
+        meanwhile()
+        dialog.get_by_role("button", name="Change 2 zones").click()
+
+    corrects(lambda: a_user_writes(page, zone, path="/zones", name=f"{name} (new)"))
+    expect(page.get_by_text("Nothing was changed")).to_be_visible()
+    expect(rows.first).to_contain_text(f"{name} (new)")  # read again
+    visitor.complaints.clear()  # the browser tells of the answer 409, which is meant
+    corrects(lambda: pictures(page, picture, "zones-edit-several"))
+    expect(rows.nth(0)).to_contain_text("Noise")
+    expect(rows.nth(1)).to_contain_text("Noise")
+    page.get_by_role("button", name="Undo", exact=True).click()
+    for row, reason in enumerate(reasons):
+        expect(rows.nth(row).get_by_role("cell").nth(3)).to_have_text(reason)
+    a_user_writes(page, zone, path="/zones", name=name)
+
+
+def a_user_writes(page: Page, key: str, path: str = "/assets", **facts: object) -> None:
+    """Another change of the asset or zone, past this page."""
     change = """async ([path, facts]) => {
         const api = await import("/static/js/api.js");
         await api.patch(path, facts, { headers: { "If-Match": (await api.get(path)).etag } });
     }"""
-    page.evaluate(change, [f"/assets/{asset}", facts])
+    page.evaluate(change, [f"{path}/{key}", facts])
 
 
 def test_the_second_of_two_curators_is_asked_and_overwrites_nothing_unseen(visitor: Visitor) -> None:

@@ -29,3 +29,23 @@ test("a map that follows a UAV stores its view once, when it rests", async (cont
   context.mock.timers.tick(1_000);
   assert.deepEqual(stored, [["PUT", longitude]]);
 });
+
+test("a move of the page itself is not where the user worked", async (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const stored = [];
+  context.mock.method(globalThis, "fetch", async (_address, { body }) => {
+    stored.push(JSON.parse(body).longitude);
+    return new Response(null, { status: 204 });
+  });
+  let longitude = 0;
+  let moved;
+  const map = { getCenter: () => ({ wrap: () => ({ lng: longitude, lat: 50 }) }), getZoom: () => 12 };
+  storeLastView({ ...map, on: (_name, act) => (moved = act) });
+  longitude = 5;
+  moved({ isOfPage: true });
+  context.mock.timers.tick(2_000);
+  assert.deepEqual(stored, []);
+  moved({ originalEvent: {}, isOfPage: false });
+  context.mock.timers.tick(2_000);
+  assert.deepEqual(stored, [5]);
+});

@@ -22,7 +22,7 @@ CURATED = re.compile(
 ASKED_BY_ALL = {
     "terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "list_parts_of_lines", "report_presence",
     "explain_unreached_target", "explain_route", "plan_legal_windows", "find_later_departure", "reachable_assets", "check_legs",
-    "plan_views", "lookup_media",
+    "plan_views", "lookup_media", "start_asset_export", "start_zone_export", "delete_export",
 }  # fmt: skip
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(users|invitations|service-accounts|sign-ins|unknown-vehicles)(/|$)")

@@ -164,7 +164,8 @@ class MonitorMap {
     map.on("dragstart", () => store.update({ isFollowing: false }));
     showTipsOnly(map, { controls: this.#controls, tip });
     this.ready = this.#view.ready.then(() => this.#start());
-    this.opensAtPlace = this.#view.opensAtPlace && !this.#view.opensAtLastView; // UAVs in flight come before the last view
+    this.opensAtLastView = this.#view.opensAtLastView;
+    this.opensAtPlace = this.#view.opensAtPlace && !this.opensAtLastView; // UAVs in the air come before the last view
   }
 
   get controls() {
