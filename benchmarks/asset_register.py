@@ -1,4 +1,4 @@
-"""How fast the register of assets answers in each order and for each filter, counts, and exports.
+"""How fast the register of assets answers in each order and for each filter, counts, exports, and edits of many.
 
     python -m benchmarks.asset_register [--assets 100000] [--write]
 
@@ -27,15 +27,18 @@ from benchmarks.report import machine, table, write_section  # noqa: E402
 from inspection.models import Asset, DataImport  # noqa: E402
 from inspection.services.ground import mark_ground_changed, number_supports  # noqa: E402
 from inspection.services.imports.regions import join_region  # noqa: E402
+from inspection.tasks import export_register  # noqa: E402
 from workspace.models import DEFAULT_ORGANISATION_ID, Role, User  # noqa: E402
 
 MAX_MS = 200.0
 SUPPORTS_A_LINE = 25
 ROUNDS = 5
+EDITED = 5_000
 STEP_DEG = 0.004
 VOLTAGES_V = (380_000, 220_000, 110_000, 20_000)
 QUERIES = (
     "limit=100", "limit=100&sort=name", "limit=100&sort=-voltage", "limit=100&sort=operator", "limit=100&sort=-changed",
+    "limit=100&sort=-height", "limit=100&sort=-length",
     "limit=100&sort=inspected", "limit=100&kind=line&sort=-length", "limit=100&voltage_v=110000&sort=name",
     "limit=100&region={region}&sort=name", "limit=100&operator=Grid%203&kind=tower&sort=-height", "limit=100&line={line}",
     "limit=100&inspected=false&sort=name", "limit=100&text=T77", "limit=100&bbox=8,45,8.3,45.3&sort=name",
@@ -86,7 +89,7 @@ def main() -> None:
     with transaction.atomic():
         line, region = store(options.assets)
         client = Client(headers={"host": "localhost"})
-        user = User.objects.create(username="register-benchmark", role=Role.VIEWER, organisation_id=DEFAULT_ORGANISATION_ID)
+        user = User.objects.create(username="register-benchmark", role=Role.CURATOR, organisation_id=DEFAULT_ORGANISATION_ID)
         client.force_login(user)
         _milliseconds(client, "/api/v1/assets?limit=1")  # loads the application
         for path, queries in (("/api/v1/assets", QUERIES), ("/api/v1/assets/summary", COUNTS)):
@@ -95,11 +98,17 @@ def main() -> None:
                 median_ms = median(_milliseconds(client, address) for _ in range(ROUNDS))
                 slowest = max(slowest, median_ms)
                 rows.append([f"`{path.removeprefix('/api/v1')}?{query}`", f"{median_ms:.0f}"])
-        for ending in ("csv", "geojson", "gpkg"):
+        for ending in ("csv", "geojson"):
             began = perf_counter()
             answer: Any = client.get(f"/api/v1/assets/export.{ending}")
             size = sum(len(piece) for piece in answer.streaming_content)
             rows.append([f"all as {ending}, {size / 1e6:.0f} MB", f"{(perf_counter() - began) * 1000.0:.0f}"])
+        began = perf_counter()
+        job = client.post("/api/v1/assets/exports").json()["id"]
+        export_register(job)
+        size = int(client.get(f"/api/v1/exports/{job}")["Content-Length"])
+        rows.append([f"all as gpkg, by a job, {size / 1e6:.0f} MB", f"{(perf_counter() - began) * 1000.0:.0f}"])
+        rows += [[f"{name} {EDITED:,} supports", f"{took_ms:.0f}"] for name, took_ms in _edits(client)]
         transaction.set_rollback(True)
     head = f"`python -m benchmarks.asset_register`: {options.assets:,} assets. {machine('django')}\n\n"
     text = head + table(["request", "median [ms]"], rows)
@@ -107,6 +116,15 @@ def main() -> None:
     if options.write:
         write_section("Register of assets", text)
     sys.exit(slowest > MAX_MS)
+
+
+def _edits(client: Client) -> list[tuple[str, float]]:
+    keys = list(Asset.objects.filter(kind="tower").order_by("pk").values_list("pk", flat=True)[:EDITED])
+    began = perf_counter()
+    answer = client.post("/api/v1/assets/edits", {"ids": keys, "values": {"operator": "Other"}}, content_type="application/json")
+    changed = perf_counter()
+    client.post("/api/v1/assets/edits/undo", {"entries": answer.json()["entries"]}, content_type="application/json")
+    return [("change the operator of", (changed - began) * 1000.0), ("undo the change of", (perf_counter() - changed) * 1000.0)]
 
 
 def _milliseconds(client: Client, address: str) -> float:
