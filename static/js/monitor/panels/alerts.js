@@ -340,8 +340,15 @@ class AlertPanel {
   #drawAcknowledgeEnded(ended) {
     this.#ended = ended.slice(0, MAX_ACKNOWLEDGED);
     this.#endedSince = new Map(this.#ended.map(({ id }) => [id, this.#endedSince.get(id) ?? Date.now()]));
-    this.#acknowledgeEnded.hidden = !this.#page.canFly || ended.length < 2;
+    this.#showAcknowledgeEnded();
+    if (this.#acknowledgeEnded.hidden && this.#ended.length >= 2)
+      setTimeout(() => this.#showAcknowledgeEnded(), SEEN_AFTER_MS);
     this.#acknowledgeEnded.textContent = t("Acknowledge all ended ({count})", { count: this.#ended.length });
+  }
+
+  /** Not before one of them can have been read. */
+  #showAcknowledgeEnded() {
+    this.#acknowledgeEnded.hidden = !this.#page.canFly || this.#ended.length < 2 || this.#endedAndSeen().length === 0;
   }
 
   /** @param {Readonly<MonitorState>} state */
