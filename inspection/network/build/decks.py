@@ -18,7 +18,7 @@ from inspection.network.zones.zone_index import plane_scale
 
 OVER_DECK_M = 12.0  # masts of contact wires, lamp posts, vehicles
 OVER_BANKS_M = 20.0  # without a stated height: the same, and a ramp that terrain data lack
-MOST_OVER_DECK_M = 300.0  # of pylons of unknown height
+MAX_OVER_DECK_M = 300.0  # of pylons of unknown height
 RING_M = 8.0  # no place of a deck is farther from a piece
 MAX_RINGS = 50
 SIMPLER_M = 0.25
@@ -62,7 +62,7 @@ def bridge_heights_m(tagged_m: FloatArray, outlines: BridgeOutlines) -> FloatArr
         part, owner = shapely.get_parts(_in_metres(outlines.area[guessed])[0], return_index=True)
         length_m = np.zeros(len(guessed))
         np.maximum.at(length_m, owner, _lengths_m(part))
-        share_m = np.minimum(outlines.tall_share[guessed] * length_m, MOST_OVER_DECK_M)
+        share_m = np.minimum(outlines.tall_share[guessed] * length_m, MAX_OVER_DECK_M)
         heights_m[guessed] = np.maximum(UNTAGGED_HEIGHT_M[NodeKind.BRIDGE], share_m)
     return heights_m
 
