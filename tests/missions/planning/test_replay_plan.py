@@ -106,7 +106,7 @@ def test_a_file_that_is_no_context_is_refused(damage: str, tmp_path: Path) -> No
     content = path.read_bytes()
     path.write_bytes({"cut": content[: len(content) // 2], "other": b"{}", "empty": b"", "layout": content}[damage])
     if damage == "layout":
-        with mock.patch("planning.context_file.LAYOUT", 2), pytest.raises(NotAContextFile, match="layout 1"):
+        with mock.patch("planning.context_file.LAYOUT", 3), pytest.raises(NotAContextFile, match="layout 2"):
             read_context(path)
     else:
         with pytest.raises(NotAContextFile):
