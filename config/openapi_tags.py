@@ -51,6 +51,7 @@ HEADINGS: dict[str, dict[str, TitleAndDescription]] = {
         "zone-subscriptions": ("Zone subscriptions", "Zone sources that are fetched at intervals."),
         "imports": ("Imports", "Read a file, review what it changes, apply or undo it."),
         "uploads": ("Uploads of files", "Files for imports, sent in parts."),
+        "exports": ("Files of registers", "Large files of assets and zones, written by a job: fetch, stop or delete."),
         "data-issues": ("Data quality", "Faults in the data, and their repairs."),
         "history": ("History of map data", "Changes of assets and zones, and undo."),
         "regions": ("Regions", "Named regions with map data."),

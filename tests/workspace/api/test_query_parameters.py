@@ -101,7 +101,7 @@ def test_the_document_and_the_pages_take_their_own_parameters() -> None:
 
 ADDRESS = re.compile(r"[\"'`](?:/api/v1)?(/[a-z][^\"'`?\s]*)\?([^\"`\n]*)")
 NAME = re.compile(r"(?:^|&)([a-z_]+)=")
-OF_PAGES = {("/uavs", "tab"), ("/zones", "id")}  # pages at paths that the API has too
+OF_PAGES = {("/assets", "id"), ("/uavs", "tab"), ("/zones", "id")}  # pages at paths that the API has too
 SOURCES = [("static/js", "*.js"), ("examples", "*.py"), ("docs", "*.md"), ("deploy", "*.py"), ("benchmarks", "*.py"), ("scripts", "*.py")]
 
 
