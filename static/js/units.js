@@ -174,8 +174,8 @@ export function positionText([longitude, latitude]) {
   return `${Math.abs(latitude).toFixed(5)}° ${north}, ${Math.abs(longitude).toFixed(5)}° ${east}`;
 }
 
-/** @param {Date} date */
-const partsOf = (date) =>
+/** The day in the user's time zone, as 2026-12-01. @param {Date} date */
+export const calendarDay = (date) =>
   new Intl.DateTimeFormat("en-CA", { ...zone, year: "numeric", month: "2-digit", day: "2-digit" }).format(date);
 
 /** @param {string | number} iso or milliseconds since 1970 */
@@ -197,8 +197,8 @@ export function dateText(iso) {
 export function whenText(iso, now = new Date()) {
   const then = new Date(iso);
   if (now.getTime() - then.getTime() < 60_000 && now >= then) return t("now");
-  if (partsOf(then) === partsOf(now)) return t("today, {time}", { time: clockText(iso) });
-  if (partsOf(then) === partsOf(new Date(now.getTime() - 86_400_000)))
+  if (calendarDay(then) === calendarDay(now)) return t("today, {time}", { time: clockText(iso) });
+  if (calendarDay(then) === calendarDay(new Date(now.getTime() - 86_400_000)))
     return t("yesterday, {time}", { time: clockText(iso) });
   return dayText(iso, now);
 }
@@ -208,7 +208,7 @@ export function dayText(iso, now = new Date()) {
   const then = new Date(iso);
   /** @type {Intl.DateTimeFormatOptions} */
   const parts = { ...zone, day: "numeric", month: "short" };
-  if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
+  if (calendarDay(then).slice(0, 4) !== calendarDay(now).slice(0, 4)) parts.year = "numeric";
   return then.toLocaleDateString(locale, parts);
 }
 
@@ -217,7 +217,7 @@ export function longDayText(iso, now = new Date()) {
   const then = new Date(iso);
   /** @type {Intl.DateTimeFormatOptions} */
   const parts = { ...zone, day: "numeric", month: "long" };
-  if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
+  if (calendarDay(then).slice(0, 4) !== calendarDay(now).slice(0, 4)) parts.year = "numeric";
   return then.toLocaleDateString(locale, parts);
 }
 

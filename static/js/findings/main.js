@@ -7,7 +7,7 @@ import { toast } from "../page/toast.js";
 import { exportLink, lookAgain, severityMark } from "../photos/findings_list.js";
 import { FINDING_STATES, SEVERITIES } from "../photos/words.js";
 import { t, tn } from "../text.js";
-import { dayText, whenText } from "../units.js";
+import { calendarDay, dayText, whenText } from "../units.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { CategoryList, InspectionFinding, InspectionFindingPage } from "../api_types.d.ts" */
@@ -45,11 +45,8 @@ const shownStates = () => asked.get("state") ?? UNSETTLED;
 const isOverdue = (/** @type {InspectionFinding} */ { due_on: due, state }) =>
   due !== null && WAITING.includes(state) && due < today();
 
-/** The day in the user's calendar, as the API writes it. */
-function today() {
-  const now = new Date();
-  return new Date(now.getTime() - now.getTimezoneOffset() * 60_000).toISOString().slice(0, 10);
-}
+/** In the user's time zone, as the API writes days. */
+const today = () => calendarDay(new Date());
 
 /** The filters as the API takes them. */
 function query() {
