@@ -28,7 +28,6 @@ from planning.trajectory.obstacles import too_low
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from workspace.locale_negotiation import number_text
 
-NEAR_DEG = 0.002
 AT_DEG = 1e-5  # a metre
 
 
