@@ -21,7 +21,7 @@ OVER_BANKS_M = 20.0  # without a stated height: the same, and a ramp that terrai
 MAX_OVER_DECK_M = 300.0  # of pylons of unknown height
 RING_M = 8.0  # no place of a deck is farther from a piece
 MAX_RINGS = 50
-SIMPLER_M = 0.25
+SIMPLER_M, BANK_SIMPLER_M = 0.25, 2.0  # of pieces, and of corners at the banks: a bend loses its smooth corners, not its ends
 MAX_CORNERS = 400  # of a bridge; of one with more the convex hull counts
 MAX_BANK_CORNERS = 16  # of a bridge
 TOUCHING_M, OVERLAP = 2.0, 0.2  # of bridges that continue each other: across the ground, and the share of the smaller that both cover
@@ -155,7 +155,7 @@ def _groups(area: NDArray[np.object_]) -> IntArray:
 
 def _bank_corners(area: NDArray[np.object_]) -> tuple[FloatArray, IntArray]:
     """Corners (p, 2) of the convex hull of each area, at most MAX_BANK_CORNERS, and the area of each (p,)."""
-    corners, owner = shapely.get_coordinates(shapely.simplify(shapely.convex_hull(area), SIMPLER_M), return_index=True)
+    corners, owner = shapely.get_coordinates(shapely.simplify(shapely.convex_hull(area), BANK_SIMPLER_M), return_index=True)
     first = np.searchsorted(owner, owner)
     count = np.bincount(owner, minlength=len(area))[owner]
     step = np.maximum(np.ceil(count / MAX_BANK_CORNERS), 1.0)

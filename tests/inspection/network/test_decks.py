@@ -70,10 +70,12 @@ def test_a_viaduct_that_is_mapped_in_parts_counts_from_the_banks_of_all() -> Non
     assert tops_m(of(parts[0], parts[2], below), valley)[2] == 130.0
 
 
-def test_bends_and_wide_bridges_count_from_their_highest_corner() -> None:
-    bend = [(200.0 * math.cos(turn), 200.0 * math.sin(turn)) for turn in np.linspace(0.0, math.pi / 2.0, 30)]
+@pytest.mark.parametrize(("radius_m", "corners"), [(200.0, 30), (1_500.0, 150)])
+def test_bends_and_wide_bridges_count_from_their_highest_corner(radius_m: float, corners: int) -> None:
+    bend = [(radius_m * math.cos(turn), radius_m * math.sin(turn)) for turn in np.linspace(0.0, math.pi / 2.0, corners)]
     ramp = shapely.Polygon([lonlat(place) for place in [*bend, *[(0.95 * x, 0.95 * y) for x, y in bend[::-1]]]])
-    assert tops_m(of(ramp), lambda east_m, north_m: 160.0 if north_m < 5.0 else 100.0) == [180.0]
+    assert tops_m(of(ramp), lambda east_m, north_m: 160.0 if north_m < 1.0 else 100.0) == [180.0]
+    assert tops_m(of(ramp), lambda east_m, north_m: 160.0 if east_m < 1.0 else 100.0) == [180.0]
     wide = zone((-16.0, -25.0), (16.0, -25.0), (16.0, 25.0), (-16.0, 25.0))
     assert tops_m(of(wide), lambda east_m, north_m: 150.0 if abs(east_m) > 15.0 else 100.0) == [170.0]
 
